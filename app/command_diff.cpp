@@ -3,6 +3,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/json_report.h"
+#include "film/image_colors.h"
 #include "film/metrics.h"
 #include "render/output_files.h"
 #include "render/sample_image.h"
@@ -34,6 +35,11 @@ void Print(const ImageDifference& difference) {
   }
 }
 
+// Both images have to be of one colour space.
+Image ReadInRec709(const std::filesystem::path& file) {
+  return InRec709(ReadImage(file), WhiteHandling::Adapt, GamutHandling::Keep);
+}
+
 }  // namespace
 
 int RunDiff(const DiffOptions& options) {
@@ -46,7 +52,7 @@ int RunDiff(const DiffOptions& options) {
   ImageDifference difference;
   Image error;
   try {
-    const Image a = ReadImage(options.a), b = ReadImage(options.b);
+    const Image a = ReadInRec709(options.a), b = ReadInRec709(options.b);
     difference = CompareImages(a, b, options.blockSize);
     if (!options.output.empty()) error = DifferenceImage(a, b);
   } catch (const Error& wrong) {  // what cannot be read or compared is wrong usage

@@ -95,11 +95,13 @@ void CheckPartsStay(const MergeOptions& options) {
 
 // Adds the layers of those names, which are the same in all parts that have them, to `layers`; not if no part was given
 // the time for them. `what`: they, in words.
-void AddLayersOf(const std::vector<Part>& parts, const std::vector<std::string>& names, const char* what, bool quiet,
-                 Image& layers) {
+void AddLayersOf(const std::vector<Part>& parts, const PixelRect& crop, const std::vector<std::string>& names,
+                 const char* what, bool quiet, Image& layers) {
   for (const Part& part : parts) {
     Image found = ChannelsOf(ReadImage(part.path), names);
     if (found.channels.empty()) continue;
+    if (found.width != crop.Width() || found.height != crop.Height())
+      throw UsageError(Quoted(part.path) + ": the picture and the state of the render in it have different sizes");
     if (layers.channels.empty()) {
       layers = std::move(found);
     } else {
@@ -114,12 +116,12 @@ void AddLayersOf(const std::vector<Part>& parts, const std::vector<std::string>&
 Image LayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool quiet) {
   Image layers;
   if (whole.metadata.contains(kFirstHitChannelsMetadata))
-    AddLayersOf(parts, Split(whole.metadata.at(kFirstHitChannelsMetadata), ','), "the layers of what is seen first",
-                quiet, layers);
+    AddLayersOf(parts, whole.crop, Split(whole.metadata.at(kFirstHitChannelsMetadata), ','),
+                "the layers of what is seen first", quiet, layers);
   if (whole.metadata.contains(kFeaturesMetadata))
-    AddLayersOf(parts, FeatureChannels(), "the features for denoising", quiet, layers);
+    AddLayersOf(parts, whole.crop, FeatureChannels(), "the features for denoising", quiet, layers);
   if (whole.metadata.contains(kAutoLayersMetadata))
-    AddLayersOf(parts, AutoChannels(), "the layers of what was decided", quiet, layers);
+    AddLayersOf(parts, whole.crop, AutoChannels(), "the layers of what was decided", quiet, layers);
   return layers;
 }
 

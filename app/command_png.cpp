@@ -2,7 +2,7 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
-#include "film/image.h"
+#include "film/image_colors.h"
 #include "render/output_files.h"
 
 namespace lampyr {
@@ -15,7 +15,7 @@ int RunPng(const PngOptions& options) {
     throw UsageError("\"" + output.string() + "\" is the image that is read: name another with --output");
   Image image;
   try {
-    image = ReadImage(options.input);
+    image = InRec709(ReadImage(options.input), WhiteHandling::Adapt, GamutHandling::Keep);
     if (!image.HasRgb()) throw Error("\"" + options.input.string() + "\" has no R, G and B channels");
   } catch (const Error& wrong) {  // what cannot be read is wrong usage
     throw UsageError(wrong.Where(), wrong.Text());

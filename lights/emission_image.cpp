@@ -10,7 +10,9 @@ EmissionImage::EmissionImage(const ParameterList& parameters, const std::string&
   const FileLocation where = parameters.WhereOf(name);
   if (!build.textures) throw Error(where, "no images can be read here: \"" + file + "\"");
   const auto read = build.textures->GetImage(file, ImageEncoding::Automatic, where);
-  *this = EmissionImage(build.textures->InRec709(read, WhiteHandling::Keep), file, where, build.diagnostics);
+  *this = EmissionImage(read, file, where, build.diagnostics);
+  const auto converted = build.textures->InRec709(read, WhiteHandling::Keep);
+  if (converted != read) *this = EmissionImage(converted, file, where, nullptr);
 }
 
 EmissionImage::EmissionImage(std::shared_ptr<const Image> image, const std::string& name, const FileLocation& where,

@@ -241,9 +241,9 @@ class Light {
   // clouds that throw shadows).
   virtual bool CanBeAimed() const { return true; }
 
-  // The part of the surface that is there at a point of it, in [0,1]; cut-outs let the rest of all rays pass. A ray
-  // that hit has met the surface, so EvaluateSamples leaves this factor out; samples and photons have it in their
-  // values.
+  // Opacity of the surface at a point of it, in [0,1]; cut-outs transmit the rest of the rays. EvaluateSamples leaves
+  // this factor out, because a ray that hit has met the surface; GenerateSamples and GenerateEmission have it in their
+  // radiance.
   virtual float Opacity(const LightHit& /*hit*/) const { return 1; }
 
   // Samples a photon by context.u and context.uDirection. nullopt: these numbers emit nothing. An area light samples

@@ -40,8 +40,10 @@ struct PointSource {
 template <class Profile>
 class PointLightWith final : public LightBase {
  public:
-  // Reads scale and power. `power` compensates for the magnitude of the profile; that of the colour is kept.
-  PointLightWith(LightTypeFunction type, const ParameterList& parameters, Profile profile, const PointSource& source)
+  // Reads scale and power. `power` compensates for the magnitude of the profile as it is placed by `build`; that of the
+  // colour is kept.
+  PointLightWith(LightTypeFunction type, const ParameterList& parameters, const LightBuildContext& build,
+                 Profile profile, const PointSource& source)
       : LightBase(type, parameters),
         profile_(std::move(profile)),
         from_(source.from),
@@ -49,15 +51,16 @@ class PointLightWith final : public LightBase {
     double scale = parameters.GetFloat("scale", 1);
     const double power = parameters.GetFloat("power", -1);
     if (power > 0) {
-      const double solidAngle = Luminance(profile_.SolidAngle(LightTransform{}));
+      const double solidAngle = Luminance(profile_.SolidAngle(build.transform));
       scale = solidAngle > 0 ? scale * power / solidAngle : 0.0;
     }
     intensity_ = source.intensity * static_cast<float>(scale) * tint_.color;
     if (!intensity_.IsValid()) throw Error(parameters.Where(), parameters.Owner() + ": the intensity is not finite");
   }
   // Reads I and from as well.
-  PointLightWith(LightTypeFunction type, const ParameterList& parameters, Profile profile)
-      : PointLightWith(type, parameters, std::move(profile), PointSource::Read(parameters)) {}
+  PointLightWith(LightTypeFunction type, const ParameterList& parameters, const LightBuildContext& build,
+                 Profile profile)
+      : PointLightWith(type, parameters, build, std::move(profile), PointSource::Read(parameters)) {}
 
   LightKind Kind() const override { return LightKind::DeltaPosition; }
 

@@ -1,6 +1,6 @@
-// Layers that a denoiser tells edges from noise by (denoise/denoise.h): what the camera sees first, also in perfect
-// mirrors and through smooth glass. They depend neither on the integrator nor on which samples of the picture are
-// rendered.
+// Auxiliary features for the denoiser (denoise/denoise.h): albedo, normal and inverse distance of the first surface,
+// also in perfect mirrors and through smooth glass. They depend neither on the integrator nor on which samples of the
+// picture are rendered.
 #pragma once
 
 #include <atomic>

@@ -18,14 +18,14 @@ inline int FirstLane(uint64_t seed, uint64_t place, uint64_t sample) {
   return static_cast<int>((MixBits(seed ^ MixBits(place)) + sample) % Wavelengths::kLanes);
 }
 
-// Radiance along the ray; of one that is vignetted nothing but the sample's light path is traced.
+// Radiance along the ray. If the ray is vignetted, only the light path of the sample is traced, if there is one.
 inline Color Radiance(const Integrator& integrator, const PixelRay& ray, const SampleContext& context) {
   if (ray.camera.weight != 0) return SampleLanes(integrator, &ray.camera.ray, context);
   if (integrator.Paths() == TracedPaths::Both) SampleLanes(integrator, nullptr, context);
   return Color(0.0f);
 }
 
-// The same, of which a tested sample is told.
+// The same; the record of a tested sample receives the radiance, too.
 inline Color TestedRadiance(const Integrator& integrator, const PixelRay& ray, const SampleContext& context) {
   const Color radiance = Radiance(integrator, ray, context);
   if (context.tested) [[unlikely]]

@@ -169,10 +169,8 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
     identity.emplace_back("the layer " + request.layer.name, request.layer.text);
   if (s.counts && !s.counts->IsDefault())
     identity.emplace_back("what auto decided (its fingerprint)", s.counts->Fingerprint());
-  for (const Setting* setting : IntegratorOf(s.integrator).settings) {
-    if (setting->changesPicture)
-      identity.emplace_back("--" + setting->name, Setting::ToExactString(s.values.Value(setting->name)));
-  }
+  for (const Setting* setting : IntegratorOf(s.integrator).settings)
+    identity.emplace_back("--" + setting->name, Setting::ToExactString(s.values.Value(setting->name)));
   return identity;
 }
 

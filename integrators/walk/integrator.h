@@ -127,7 +127,7 @@ struct SampleContext {
   // sample once for each lane.
   int lane = 0;
   bool* disperses = nullptr;   // set where a path of the sample disperses; may be null
-  bool repeatsOthers = false;  // what the paths of the sample bring before they disperse was counted with another lane
+  bool repeatsOthers = false;  // what its paths contribute before they disperse was added by another lane already
   // Receives an estimate of what merging photons within a radius adds to the expectation of the returned radiance
   // (photon/merge_bias.h). Null: not wanted.
   Color* mergeBias = nullptr;
@@ -145,7 +145,7 @@ struct SampleContext {
     with.mediumTimes = mediumTimes;
     return with;
   }
-  // True if what a path brings was counted with another lane.
+  // True if what a path contributes was added by another lane already.
   bool IsCounted(bool isDispersed) const { return repeatsOthers && !isDispersed; }
 };
 

@@ -22,7 +22,7 @@ struct IntegratorInput {
   const Settings& settings;
   const TechniqueCounts* counts = nullptr;  // of bidirectional integrators; null: all techniques once
   double splatCount = 1;                    // samples of a pixel that a splat is worth
-  double fewer = 1;  // a pass has so many times fewer light paths than the image has pixels, as in a pilot
+  double fewer = 1;                         // pixels of the image over light paths of a pass; above 1 in a pilot
 
   double FilmPixels() const { return static_cast<double>(width) * static_cast<double>(height); }
 };

@@ -97,7 +97,8 @@ class PathVisitor {
   virtual bool Met(const Subpath& /*path*/, const PathState&, const RayHit&, const SurfacePoint&, bool /*isLight*/) {
     return true;
   }
-  // Media have emitted `radiance` along the ray of `state`, towards its start, where β is that of `state`.
+  // Radiance emitted by media along the ray of `state`, as it arrives at the ray's start; its throughput is that of
+  // `state`.
   virtual void Glowed(const Subpath& /*path*/, const PathState&, const Color& /*radiance*/) {}
   // The ray of `state` has been traced through media. Called before β and the vertices know of it, if the settings ask
   // for flights.

@@ -45,8 +45,10 @@ BeamImage::BeamImage(const ParameterList& parameters, const FilterBuildContext& 
   const FileLocation where = parameters.WhereOf("filename");
   if (file.empty()) throw Error(where, parameters.Owner() + " needs a \"string filename\"");
   if (!build.textures) throw Error(where, "no images can be read here: \"" + file + "\"");
-  const EmissionImage image(build.textures->GetImage(file, ImageEncoding::Automatic, where), file, where,
-                            build.diagnostics);
+  const auto read = build.textures->GetImage(file, ImageEncoding::Automatic, where);
+  EmissionImage image(read, file, where, build.diagnostics);
+  const auto converted = build.textures->InRec709(read, WhiteHandling::Adapt);
+  if (converted != read) image = EmissionImage(converted, file, where, nullptr);
   const Color tint = ReadEmissionColor(parameters, "tint");
   const auto get = [&](const char* name, double value) { return static_cast<float>(parameters.GetFloat(name, value)); };
   const float blur = get("blur", 0);

@@ -54,8 +54,9 @@ struct EmittedPhoton {
   uint32_t light = 0;
   PdfDiscrete emissionSelection;
   EmissionSample emission;
-  float pdfUnguided =
-      0;  // without a guide, the density that guiding changes: 1/m² for lights at infinity, 1/sr for others
+  // The density that a guide changes, as it is without one: of the line (1/m²) for lights at infinity, of the direction
+  // (1/sr) for others.
+  float pdfUnguided = 0;
   Ray ray;
   bool fromSurface = false;  // starts on a surface that camera rays can hit
 

@@ -122,17 +122,43 @@ class ConeSky {
   bool isSphere_ = false;
 };
 
-std::unique_ptr<Light> CreateDistant(const ParameterList& parameters, const LightBuildContext&) {
+// Integrals over a cone of directions, as it is placed: of the cosine to its axis where that is positive (the factor
+// from radiance to the irradiance of a surface that faces the axis), and of the cosine's size.
+struct ConeIntegrals {
+  double facing = 0, size = 0;
+};
+
+ConeIntegrals IntegrateCone(const Vector3& axis, double theta, const LightTransform& transform) {
+  const double squared = std::sin(theta) * std::sin(theta);
+  if (IsSimilarity(transform.toRender.linear)) {
+    if (theta > 0.5 * kPiDouble) return {kPiDouble, kPiDouble * (2 - squared)};
+    return {kPiDouble * squared, kPiDouble * squared};
+  }
+  constexpr int n = 256;  // in 1 - cosθ and around the axis
+  const double end = 2 * std::sin(0.5 * theta) * std::sin(0.5 * theta);
+  const Frame frame = Frame::FromNormal(axis);
+  const Vector3 placed = ToRenderDirection(transform, axis);
+  ConeIntegrals sum;
+  for (int i = 0; i < n * n; ++i) {
+    const double w = end * (i / n + 0.5) / n, sine = std::sqrt(w * (2 - w)), phi = 2 * kPiDouble * (i % n + 0.5) / n;
+    const Vector3d local(sine * std::cos(phi), sine * std::sin(phi), 1 - w);
+    const Vector3 direction = ToRenderDirection(transform, frame.ToWorld(Vector3(local)));
+    const auto cosine = static_cast<double>(glm::dot(direction, placed) / LocalSolidAngleFactor(transform, direction));
+    sum.facing += std::max(cosine, 0.0);
+    sum.size += std::abs(cosine);
+  }
+  const double each = 2 * kPiDouble * end / (static_cast<double>(n) * n);
+  return {sum.facing * each, sum.size * each};
+}
+
+std::unique_ptr<Light> CreateDistant(const ParameterList& parameters, const LightBuildContext& build) {
   const LightTint tint = ReadLightTint(parameters);
   const double angle = parameters.GetFloat("angle", 0), theta = angle * kPiDouble / 360;
-  const double sineSquared = std::sin(theta) * std::sin(theta);
-  const bool isWide = angle > 180;
   double scale = parameters.GetFloat("scale", 1);
   const double illuminance = parameters.GetFloat("illuminance", -1);
-  // Factor from L to the irradiance of a facing surface, for parallel light and for disks.
-  const double facing = isWide ? kPiDouble : kPiDouble * sineSquared;
-  const double normalized = isWide ? 1 / (2 - sineSquared) : 1;  // facing / size factor
-  double toIrradiance = scale;
+  const auto [facing, size] = IntegrateCone(ReadToLight(parameters), theta, build.transform);
+  const double normalized = size > 0 ? facing / size : 1;
+  double toIrradiance = scale;  // from L to the irradiance of a facing surface, for parallel light and for disks
   if (angle > 0 && !(illuminance > 0)) toIrradiance *= tint.normalize ? normalized : facing;
   if (illuminance > 0) toIrradiance *= illuminance;
   const Color color = ReadEmissionColor(parameters, "L") * tint.color;

@@ -1,6 +1,7 @@
 #include "lights/types/image_sky.h"
 
 #include "base/parallel.h"
+#include "lights/direction_map.h"
 
 namespace lampyr {
 
@@ -63,14 +64,27 @@ float ImageSky::RowSolidAngle(int y, int columns, int rows) const {
   return static_cast<float>(2 * pi / width * 2 * std::sin(middle) * std::sin(half));
 }
 
-double ImageSky::UpperIlluminance() const {
+double ImageSky::UpperIlluminance(const LightTransform& transform) const {
   const int width = table_.Width(), height = table_.Height();
+  const bool isSimilar = IsSimilarity(transform.toRender.linear);
+  const Vector3 up = ToRenderDirection(transform, Vector3(0, 0, 1) * toImage_);
+  // Cosine times the solid angle in render space over that of the map.
+  const auto weight = [&](const Vector3& w) {
+    if (isSimilar) return w.z;
+    const Vector3 direction = ToRenderDirection(transform, w * toImage_);
+    return glm::dot(direction, up) / LocalSolidAngleFactor(transform, direction);
+  };
+  // Within a texel the cosine is taken as that in the middle; where a placement stretches, in the middle of its parts.
+  const int parts = isSimilar ? 1 : std::clamp(512 / std::min(width, height), 1, 32);
   double sum = 0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const Point2 uv = TexelMiddle(x, y, width, height);
+  for (int y = 0; y < height * parts; ++y) {
+    for (int x = 0; x < width * parts; ++x) {
+      const Point2 uv = TexelMiddle(x, y, width * parts, height * parts);
       const Vector3 w = map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv);
-      if (w.z > 0) sum += static_cast<double>(table_.ColorAt(x, y).Luminance() * w.z * RowSolidAngle(y, width, height));
+      const float cosine = weight(w);
+      if (!(cosine > 0)) continue;
+      sum += static_cast<double>(table_.ColorAt(x / parts, y / parts).Luminance() * cosine *
+                                 RowSolidAngle(y, width * parts, height * parts));
     }
   }
   return sum;

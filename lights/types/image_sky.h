@@ -46,8 +46,8 @@ class ImageSky {
     return {scale_ * texel.color, ToSolidAngle(texel.pdf, w)};
   }
 
-  // Luminous irradiance of a surface that faces the map's +z, from the texels of the upper hemisphere, before Scale.
-  double UpperIlluminance() const;
+  // Luminous irradiance of a surface that faces what `transform` makes of the map's +z, before Scale.
+  double UpperIlluminance(const LightTransform& transform) const;
 
  private:
   Point2 ToSquare(const Vector3& w) const {

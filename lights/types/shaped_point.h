@@ -146,9 +146,9 @@ std::unique_ptr<Light> MakePointLight(LightTypeFunction type, const ParameterLis
                                       const LightBuildContext& build, Profile profile, const PointSource& source,
                                       const Vector3& axis) {
   const auto shaping = Shaping::Read(parameters, build, Shaping::Emitter::Point);
-  if (!shaping) return std::make_unique<PointLightWith<Profile>>(type, parameters, std::move(profile), source);
+  if (!shaping) return std::make_unique<PointLightWith<Profile>>(type, parameters, build, std::move(profile), source);
   return std::make_unique<PointLightWith<ShapedPointProfile<Profile>>>(
-      type, parameters, ShapedPointProfile<Profile>(std::move(profile), shaping, axis), source);
+      type, parameters, build, ShapedPointProfile<Profile>(std::move(profile), shaping, axis), source);
 }
 
 // Parameter rows of a type, of shaping and of all lights.

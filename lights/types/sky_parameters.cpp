@@ -66,7 +66,7 @@ SkyChoice ReadInfiniteSky(const ParameterList& parameters, const LightBuildConte
   }
   sky.image.emplace(parameters, "filename", build);
   if (illuminance > 0) {
-    const double measured = sky.image->UpperIlluminance();
+    const double measured = sky.image->UpperIlluminance(build.transform);
     scale = measured > 0 ? scale * illuminance / measured : 0.0;
   }
   sky.image->Scale(CheckedScale(parameters, scale));

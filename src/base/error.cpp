@@ -100,12 +100,14 @@ std::vector<std::string> Diagnostics::Warnings() const {
 }
 
 std::string NearestName(std::string_view given, const std::vector<std::string>& known) {
+  // The distance takes time in proportion to the product of both lengths, and nobody types such a name.
+  constexpr size_t kLongestName = 200;
+  if (given.size() > kLongestName) return "";
   const int limit = std::max(1, static_cast<int>(given.size()) / 3);
   int best = limit + 1;
   std::string nearest;
   for (const std::string& name : known) {
-    // The difference in length bounds the distance from below; this skips the quadratic algorithm for words of
-    // megabytes.
+    // The difference in length bounds the distance from below; this skips the quadratic algorithm for long names.
     const size_t longer = std::max(given.size(), name.size()), shorter = std::min(given.size(), name.size());
     if (longer - shorter > static_cast<size_t>(limit)) continue;
     const int distance = EditDistance(given, name);

@@ -29,10 +29,9 @@ struct Setting {
   std::vector<std::string> choices{};  // words: the allowed ones
   std::string without{};               // switches that are on by default: the effect of turning them off, for the help
 
-  std::string sceneName{};     // name in scene files; "": `name` without hyphens
-  bool isInScenes = true;      // false: command line only
-  bool isBiased = false;       // true: any other value than the fallback makes the picture wrong, for speed
-  bool changesPicture = true;  // true: part of the identity of a checkpoint
+  std::string sceneName{};  // name in scene files; "": `name` without hyphens
+  bool isInScenes = true;   // false: command line only
+  bool isBiased = false;    // true: any other value than the fallback makes the picture wrong, for speed
 
   std::string NameInScenes() const;
   // The range in words: "from 0 to 1", "0 or more"; "" for numbers without a range.

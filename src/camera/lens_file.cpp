@@ -41,7 +41,9 @@ struct Row {
 class Lines {
  public:
   Lines(std::string_view text, const std::string& name)
-      : text_(text), name_(std::make_shared<const std::string>(name)) {}
+      : text_(text), name_(std::make_shared<const std::string>(name)) {
+    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+  }
 
   bool Next(std::vector<Word>& words) {
     words.clear();

@@ -82,6 +82,10 @@ Image::Image(int w, int h, std::vector<std::string> channelNames)
       data(static_cast<size_t>(w) * static_cast<size_t>(h) * channels.size(), 0.0f) {}
 
 void AppendChannels(Image& image, const Image& more) {
+  if (image.width != more.width || image.height != more.height) {
+    const auto size = [](const Image& of) { return std::to_string(of.width) + "×" + std::to_string(of.height); };
+    throw Error("layers of " + size(more) + " pixels do not belong to an image of " + size(image));
+  }
   const size_t own = image.channels.size(), added = more.channels.size();
   std::vector<float> data;
   data.reserve(image.data.size() + more.data.size());
@@ -126,7 +130,9 @@ Color Image::RgbAt(int x, int y) const {
 
 bool Image::HasRgb() const {
   if (ChannelIndex("R") >= 0 && ChannelIndex("G") >= 0 && ChannelIndex("B") >= 0) return true;
-  return channels.size() == 1 || ChannelIndex("Y") >= 0;
+  if (channels.size() == 1) return true;
+  const auto has = [this](const char* name) { return ChannelIndex(name) >= 0; };
+  return has("Y") && !has("X") && !has("Z") && !has("RY") && !has("BY");  // otherwise Y is a part of a colour
 }
 
 std::vector<size_t> ChannelOrder(const std::vector<std::string>& names) {

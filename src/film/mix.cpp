@@ -27,9 +27,18 @@ std::array<size_t, 3> ChannelsOfLayer(const Image& image, const std::string& lay
   return channels;
 }
 
+// "" is the picture.
+bool HasLayer(const Image& image, const std::string& layer) {
+  return std::all_of(kChannels.begin(), kChannels.end(), [&](const char* channel) {
+    return image.ChannelIndex((layer.empty() ? "" : layer + ".") + channel) >= 0;
+  });
+}
+
 void Check(const Image& image, const std::vector<LayerFactor>& factors) {
   const std::vector<std::string> known = ColorLayers(image);
   if (known.empty()) throw Error("the picture has no layers: light groups or --layer make them");
+  if (!HasLayer(image, ""))
+    throw Error("the picture has layers, but not the channels R, G and B that they are parts of");
   std::set<std::string> named;
   for (const LayerFactor& each : factors) {
     if (std::find(known.begin(), known.end(), each.layer) == known.end())
@@ -60,7 +69,7 @@ void ScaleOthers(const Color& factor, const std::vector<std::string>& groups, Im
     if (!IsBandLayer(image.channels[channel])) continue;
     for (size_t i = channel; i < image.data.size(); i += image.channels.size()) image.data[i] *= factor.r;
   }
-  if (image.ChannelIndex("variance.R") >= 0) Scale(factor * factor, "variance", image);
+  if (HasLayer(image, "variance")) Scale(factor * factor, "variance", image);
   for (const std::string& layer : ColorLayers(image)) {
     if (std::find(groups.begin(), groups.end(), layer) == groups.end()) Scale(factor, layer, image);
   }
@@ -84,7 +93,8 @@ Image Kept(const Image& image, const std::function<bool(const std::string&)>& is
 // Channels that are true of the light as it was alone: halves of the samples, the picture before denoising, strategies
 // and errors.
 bool IsOfParts(const std::string& channel) {
-  for (const char* prefix : {"half.", "noisy.", "weighted.", "unweighted.", "relativeError", "bias.", kSplatShareChannel}) {
+  for (const char* prefix :
+       {"half.", "noisy.", "weighted.", "unweighted.", "relativeError", "bias.", kSplatShareChannel}) {
     if (channel.starts_with(prefix)) return true;
   }
   return false;

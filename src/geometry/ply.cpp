@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <charconv>
@@ -11,6 +12,8 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+
+#include "geometry/polygon.h"
 
 namespace lampyr {
 
@@ -313,6 +316,14 @@ struct FaceIndices {
   std::vector<int> ofTriangles, ofQuads;
 };
 
+// A face of more than four corners.
+struct Polygon {
+  uint64_t face = 0;
+  size_t firstTriangle = 0;
+  std::vector<uint32_t> corners;
+};
+
+// As a fan; ReplaceFans looks at the positions, which may come after the faces.
 void AddFace(const std::vector<uint32_t>& corners, int faceIndex, PlyMesh& mesh, FaceIndices& indices) {
   if (corners.size() == 4) {
     mesh.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
@@ -325,7 +336,23 @@ void AddFace(const std::vector<uint32_t>& corners, int faceIndex, PlyMesh& mesh,
   }
 }
 
-void ReadFaces(const Element& element, ValueReader& reader, uint64_t vertexCount, PlyMesh& mesh, const Failure& fail) {
+// Triangles of polygons with notches, which fans would fill.
+void ReplaceFans(const std::vector<Polygon>& polygons, PlyMesh& mesh, const Failure& fail) {
+  constexpr size_t kMostCorners = 2000;  // ears are searched in quadratic time
+  for (const Polygon& polygon : polygons) {
+    if (IsFan(mesh.positions, polygon.corners)) continue;
+    if (polygon.corners.size() > kMostCorners) {
+      fail("face " + std::to_string(polygon.face) + " has " + std::to_string(polygon.corners.size()) +
+           " corners and is not convex: split it into triangles (of up to 2000 corners that is done here)");
+    }
+    const std::vector<TriangleCorners> triangles = CutEars(mesh.positions, polygon.corners);
+    std::copy(triangles.begin(), triangles.end(),
+              mesh.triangles.begin() + static_cast<std::ptrdiff_t>(polygon.firstTriangle));
+  }
+}
+
+void ReadFaces(const Element& element, ValueReader& reader, uint64_t vertexCount, PlyMesh& mesh,
+               std::vector<Polygon>& polygons, const Failure& fail) {
   bool hasCorners = false, hasIndices = false;
   const auto isCorners = [](const Property& p) {
     return p.countType && (p.name == "vertex_indices" || p.name == "vertex_index");
@@ -359,6 +386,7 @@ void ReadFaces(const Element& element, ValueReader& reader, uint64_t vertexCount
         SkipValue(p, reader);
       }
     }
+    if (corners.size() > 4) polygons.push_back({i, mesh.triangles.size(), corners});
     AddFace(corners, faceIndex, mesh, indices);
   }
   if (hasIndices) {
@@ -404,6 +432,7 @@ PlyMesh ParsePly(const std::string& content, const std::string& name, const File
   const Header header = ParseHeader(headerReader, fail);
   ValueReader reader(headerReader.Rest(), header.format, fail);
   PlyMesh mesh;
+  std::vector<Polygon> polygons;
   uint64_t vertexCount = 0;
   bool hasVertices = false, hasFaces = false;
   for (const Element& element : header.elements) {
@@ -419,7 +448,7 @@ PlyMesh ParsePly(const std::string& content, const std::string& name, const File
     if (element.name == "vertex") {
       ReadVertices(element, reader, mesh, fail);
     } else if (element.name == "face") {
-      ReadFaces(element, reader, vertexCount, mesh, fail);
+      ReadFaces(element, reader, vertexCount, mesh, polygons, fail);
     } else {
       for (uint64_t i = 0; i < element.count; ++i) {
         for (const Property& p : element.properties) SkipValue(p, reader);
@@ -428,6 +457,7 @@ PlyMesh ParsePly(const std::string& content, const std::string& name, const File
   }
   if (!hasVertices) fail("has no element \"vertex\"");
   if (!hasFaces) fail("has no element \"face\"");
+  ReplaceFans(polygons, mesh, fail);
   return mesh;
 }
 

@@ -17,7 +17,7 @@ struct PlyMesh {
   std::vector<Normal3> normals;  // per vertex, or empty; as in the file (not normalised); 0 for none
   size_t missingNormals = 0;     // those that are 0 because those of the file are not finite, or beyond 1e18
   std::vector<Point2> uvs;       // per vertex, or empty
-  std::vector<std::array<uint32_t, 3>> triangles;  // of more than four corners: a fan
+  std::vector<std::array<uint32_t, 3>> triangles;  // also of faces of more than four corners
   // Corners in order around the face; as a bilinear patch p00 p10 p01 p11 that is corners 0, 1, 3, 2.
   std::vector<std::array<uint32_t, 4>> quads;
   // The file's face_indices: one for each triangle and then one for each quad; empty when there are none.

@@ -119,6 +119,16 @@ class IesText {
     return angles;
   }
 
+  // After the last of `count` values. Words that are no numbers are remarks.
+  void CheckNoNumberFollows(size_t count) {
+    SkipSeparators();
+    const size_t end = std::min(text_.find_first_of(kSeparators, position_), text_.size());
+    if (AtEnd() || !LooksLikeNumber(text_.substr(position_, end - position_))) return;
+    throw Error(Here(), "the file has more than the " + std::to_string(count) +
+                            " candela values that it announces: its counts are wrong, or its numbers have decimal "
+                            "commas, which separate numbers here");
+  }
+
  private:
   std::string_view text_;
   std::shared_ptr<const std::string> name_;
@@ -256,6 +266,7 @@ IesFile ParseIesFile(const std::string& source, const std::string& name) {
       throw Error(where, "the candela value " + Shown(value) + ", times the file's multipliers " + Shown(factor) +
                              ", is " + Shown(file.candela[i]) + ": it has to be at most 1e30");
   }
+  text.CheckNoNumberFollows(file.candela.size());
   return file;
 }
 

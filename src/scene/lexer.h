@@ -49,6 +49,7 @@ class Lexer {
   bool TryNumber(double& number);
   bool TryInteger(int64_t& number);
 
+  int Line() const { return line_; }  // of what was read last, from 1
   const std::string& Text() const { return text_; }
   const std::shared_ptr<const std::string>& Name() const { return name_; }
 

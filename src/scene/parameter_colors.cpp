@@ -47,7 +47,7 @@ std::vector<Color> ParameterList::ColorsOf(const Parameter& parameter, SpectrumR
       colors.push_back(BlackbodyToColor(kelvin, role));
     }
   } else if (!parameter.numbers.empty()) {
-    colors.push_back(SpectrumToColor(SpectrumFromPairs(parameter.numbers, parameter.where), role));
+    colors.push_back(SpectrumToColor(SpectrumFromPairs(parameter.numbers, role, parameter.where), role));
   }
   if (parameter.type != ParameterType::Spectrum) return colors;
   for (const std::string& name : parameter.strings) {
@@ -61,7 +61,7 @@ std::vector<Color> ParameterList::ColorsOf(const Parameter& parameter, SpectrumR
       throw Error(parameter.where,
                   "\"" + name + "\" is neither a spectrum's name nor a file" + DidYouMean(name, SpectrumNames()));
     }
-    colors.push_back(SpectrumToColor(ReadSpectrumFile(file, parameter.where), role));
+    colors.push_back(SpectrumToColor(ReadSpectrumFile(file, role, parameter.where), role));
   }
   return colors;
 }
@@ -88,13 +88,13 @@ std::shared_ptr<const SpectralCurve> ParameterList::FindCurve(const std::string&
     return std::make_shared<const SpectralCurve>(BlackbodyCurve(parameter->numbers[0], role));
   if (parameter->strings.empty()) {
     return std::make_shared<const SpectralCurve>(
-        CurveOf(SpectrumFromPairs(parameter->numbers, parameter->where), role));
+        CurveOf(SpectrumFromPairs(parameter->numbers, role, parameter->where), role));
   }
   const std::string& spectrum = parameter->strings[0];
   if (auto named = FindNamedCurve(spectrum, role)) return std::make_shared<const SpectralCurve>(*std::move(named));
   if (FindNamedSpectrum(spectrum, role)) return nullptr;
   const std::string file = ResolveFile(spectrum, parameter->where);
-  return std::make_shared<const SpectralCurve>(CurveOf(ReadSpectrumFile(file, parameter->where), role));
+  return std::make_shared<const SpectralCurve>(CurveOf(ReadSpectrumFile(file, role, parameter->where), role));
 }
 
 Color ParameterList::GetColor(const std::string& name, const Color& defaultValue, SpectrumRole role) const {

@@ -30,6 +30,27 @@ double Evaluate(const std::vector<SpectrumSample>& spectrum, double lambda, bool
   return std::lerp(a.value, b.value, (lambda - a.wavelength) / (b.wavelength - a.wavelength));
 }
 
+// The mean of such a spectrum over [low, high], exact.
+double Mean(const std::vector<SpectrumSample>& spectrum, double low, double high, bool continueEnds) {
+  const double first = spectrum.front().wavelength, last = spectrum.back().wavelength;
+  double sum = 0;
+  if (continueEnds) {
+    sum += spectrum.front().value * std::max(std::min(high, first) - low, 0.0);
+    sum += spectrum.back().value * std::max(high - std::max(low, last), 0.0);
+  }
+  double from = std::max(low, first);
+  const double end = std::min(high, last);
+  auto next = std::upper_bound(spectrum.begin(), spectrum.end(), from,
+                               [](double l, const SpectrumSample& s) { return l < s.wavelength; });
+  while (from < end) {  // `next` is the first sample beyond `from`
+    const double to = std::min(next->wavelength, end);
+    sum += 0.5 * (Evaluate(spectrum, from, false) + Evaluate(spectrum, to, false)) * (to - from);
+    from = to;
+    if (next->wavelength <= from) ++next;
+  }
+  return sum / (high - low);
+}
+
 // Wavelengths to integrate over: every nanometre of the visible range, and around each sample of the spectrum, so that
 // narrow lines are not missed and jumps at the ends remain jumps.
 std::vector<double> GridOf(const std::vector<SpectrumSample>& spectrum) {
@@ -146,13 +167,9 @@ SpectralCurve CurveOfPower(const SpectralCurve& power, SpectrumRole role) {
 
 SpectralCurve CurveOf(const std::vector<SpectrumSample>& spectrum, SpectrumRole role) {
   // The mean over the nanometre around the wavelength, so that a narrow line keeps its power.
-  constexpr int kParts = 32;
   const bool continueEnds = role == SpectrumRole::Unbounded;
-  const SpectralCurve curve([&](double wavelength) {
-    double sum = 0;
-    for (int i = 0; i < kParts; ++i) sum += Evaluate(spectrum, wavelength - 0.5 + (i + 0.5) / kParts, continueEnds);
-    return sum / kParts;
-  });
+  const SpectralCurve curve(
+      [&](double wavelength) { return Mean(spectrum, wavelength - 0.5, wavelength + 0.5, continueEnds); });
   if (role == SpectrumRole::Illuminant) return CurveOfPower(curve, role);
   if (IsUnbounded(role)) return curve;
   return SpectralCurve([&](double wavelength) { return std::min(curve.At(wavelength), 1.0); });
@@ -164,7 +181,14 @@ SpectralCurve BlackbodyCurve(double kelvin, SpectrumRole role) {
   return CurveOfPower(body, role == SpectrumRole::Illuminant ? role : SpectrumRole::Albedo);
 }
 
-std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, const FileLocation& where) {
+namespace {
+
+// `whereOf`: the place of a pair.
+std::vector<SpectrumSample> CheckedPairs(const std::vector<double>& numbers, SpectrumRole role,
+                                         const FileLocation& where,
+                                         const std::function<FileLocation(size_t)>& whereOf) {
+  constexpr double kLargestAlbedo = 1.1;  // measurements are off by a few percent
+  constexpr double kShortest = 100;       // nm; a spectrum that ends below says nothing about light
   if (numbers.size() % 2 != 0) {
     throw Error(where, "a spectrum is pairs of wavelength and value: " + std::to_string(numbers.size()) +
                            " numbers are not a multiple of 2");
@@ -173,23 +197,43 @@ std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers
   std::vector<SpectrumSample> spectrum(numbers.size() / 2);
   for (size_t i = 0; i < spectrum.size(); ++i) {
     spectrum[i] = {numbers[2 * i], numbers[2 * i + 1]};
-    const std::string which = "pair " + std::to_string(i + 1) + " of the spectrum";
-    if (!(spectrum[i].wavelength > 0)) throw Error(where, which + " has a wavelength that is not above 0 nm");
-    if (i > 0 && !(spectrum[i].wavelength > spectrum[i - 1].wavelength)) {
-      throw Error(where, which + " does not have a longer wavelength than the pair before");
-    }
-    if (spectrum[i].value < 0) throw Error(where, which + " has a negative value");
+    const auto fail = [&](const char* what) {
+      throw Error(whereOf(i), "pair " + std::to_string(i + 1) + " of the spectrum " + what);
+    };
+    if (!(spectrum[i].wavelength > 0)) fail("has a wavelength that is not above 0 nm");
+    if (i > 0 && !(spectrum[i].wavelength > spectrum[i - 1].wavelength))
+      fail("does not have a longer wavelength than the pair before");
+    if (spectrum[i].value < 0) fail("has a negative value");
+    if (role == SpectrumRole::Albedo && spectrum[i].value > kLargestAlbedo)
+      fail("has a value above 1: a surface reflects at most what it receives. Is it in percent?");
   }
+  if (spectrum.back().wavelength < kShortest)
+    throw Error(whereOf(0), "the spectrum ends below 100 nm: wavelengths are in nanometres. Are these micrometres?");
   return spectrum;
 }
 
-std::vector<SpectrumSample> ReadSpectrumFile(const std::filesystem::path& file, const FileLocation& where) {
-  Lexer lexer(std::make_shared<const std::string>(file.string()), ReadTextFile(file, where));
+}  // namespace
+
+std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, SpectrumRole role,
+                                              const FileLocation& where) {
+  return CheckedPairs(numbers, role, where, [&](size_t) { return where; });
+}
+
+std::vector<SpectrumSample> ReadSpectrumFile(const std::filesystem::path& file, SpectrumRole role,
+                                             const FileLocation& where) {
+  const auto name = std::make_shared<const std::string>(file.string());
+  Lexer lexer(name, ReadTextFile(file, where));
   std::vector<double> numbers;
-  for (double number = 0; lexer.TryNumber(number);) numbers.push_back(number);
+  std::vector<int> lines;  // of each pair
+  for (double number = 0; lexer.TryNumber(number);) {
+    if (numbers.size() % 2 == 0) lines.push_back(lexer.Line());
+    numbers.push_back(number);
+  }
   const Token rest = lexer.Next();
   if (rest.kind != TokenKind::End) throw Error(rest.where, Describe(rest) + " is not a number");
-  return SpectrumFromPairs(numbers, FileLocation{std::make_shared<const std::string>(file.string())});
+  return CheckedPairs(numbers, role, FileLocation{name}, [&](size_t pair) {
+    return FileLocation{name, lines[pair], 1};
+  });
 }
 
 }  // namespace lampyr

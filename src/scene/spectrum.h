@@ -38,11 +38,14 @@ Color BlackbodyToColor(double kelvin, SpectrumRole role);
 Color NormalizedBlackbody(double kelvin);
 
 // Converts a list λ0 v0 λ1 v1 …. Throws an Error at `where` unless it has at least two pairs, increasing wavelengths
-// and no negative values.
-std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, const FileLocation& where);
+// that are not all below 100 nm (micrometres), and no negative values; for the role Albedo, none above 1 by more than
+// what measurements are off (1.1).
+std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, SpectrumRole role,
+                                              const FileLocation& where);
 
-// Reads a text file of such pairs; `#` starts a comment. Throws Errors that name the file.
-std::vector<SpectrumSample> ReadSpectrumFile(const std::filesystem::path& file, const FileLocation& where);
+// Reads a text file of such pairs; `#` starts a comment. Throws Errors at the pair in the file.
+std::vector<SpectrumSample> ReadSpectrumFile(const std::filesystem::path& file, SpectrumRole role,
+                                             const FileLocation& where);
 
 // "metal-Au-eta", "glass-BK7", "stdillum-D65", …; nullopt for other names.
 std::optional<Color> FindNamedSpectrum(const std::string& name, SpectrumRole role);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "film/image_colors.h"
 #include "film/srgb.h"
 #include "textures/texture_families.h"
 
@@ -178,23 +179,9 @@ std::shared_ptr<const Image> TextureLibrary::GetImage(const std::filesystem::pat
 
 std::shared_ptr<const Image> TextureLibrary::InRec709(const std::shared_ptr<const Image>& image,
                                                       WhiteHandling white) const {
-  if (!image->chromaticities) return image;
-  const auto found = converted_.find({image, white});
-  if (found != converted_.end()) return found->second;
-  const auto matrix = MatrixToRec709(*image->chromaticities, white);
-  const int channels[] = {image->ChannelIndex("R"), image->ChannelIndex("G"), image->ChannelIndex("B")};
-  if (!matrix || std::min({channels[0], channels[1], channels[2]}) < 0) return image;
-  auto converted = std::make_shared<Image>(*image);
-  for (size_t first = 0; first < converted->data.size(); first += converted->channels.size()) {
-    const auto channel = [&](int i) -> float& { return converted->data[first + static_cast<size_t>(channels[i])]; };
-    const Vector3d rgb(channel(0), channel(1), channel(2));
-    const Color color = ClampToGamut(*matrix * rgb);
-    if (!IsFinite(rgb) || glm::min(rgb.x, glm::min(rgb.y, rgb.z)) < 0) continue;  // told of by whoever uses it
-    channel(0) = color.r;
-    channel(1) = color.g;
-    channel(2) = color.b;
-  }
-  converted_[{image, white}] = converted;
+  if (!NeedsConversion(*image, white)) return image;
+  std::shared_ptr<const Image>& converted = converted_[{image, white}];
+  if (!converted) converted = std::make_shared<const Image>(lampyr::InRec709(*image, white, GamutHandling::Limit));
   return converted;
 }
 

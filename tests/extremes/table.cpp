@@ -53,8 +53,8 @@ std::string SectionOf(const ExtremeGroup& group, const std::vector<Row>& rows) {
 std::string PageOf(const std::vector<std::string>& sections) {
   std::string page = R"(# Extremes
 
-What becomes of sizes, distances, intensities, angles, materials and photons where numbers run out: a value that is known in closed form, against
-what each integrator finds. Written by the suite (`LAMPYR_WRITE_TABLES=1 build/release/tests/test_extremes --gtest_filter='*Table*'`),
+Renders at extreme sizes, distances, intensities and angles, and with extreme materials and photon settings: a value that is known in
+closed form, against that of each integrator. Written by the suite (`LAMPYR_WRITE_TABLES=1 build/release/tests/test_extremes --gtest_filter='*Table*'`),
 which compares cases, expected values and verdicts with this page whenever it runs.
 
 A row has the integrator that is farthest off (bold), its relative error, and one standard error of it (±, from 16 renders with other

@@ -47,10 +47,10 @@ std::string Page() {
           "lampyr compare SCENE.pbrt --integrators vcm,vcm:merge=off\n"
           "```\n\n"
           "A switch that is on by default is turned off by `--no-NAME`. The JSON of `--stats` has the values under\n"
-          "`settings`. A checkpoint goes on with the values that it was made with; those in the last column may "
-          "differ.\n\n"
-          "| Setting | In scenes | Type | Default | Values | Integrators | What it sets | Free in a checkpoint |\n"
-          "|---|---|---|---|---|---|---|---|\n";
+          "`settings`. A checkpoint can only be resumed with the values that it was made with. Light sampler `bvh` is\n"
+          "pbrt-v4's name of `tree`.\n\n"
+          "| Setting | In scenes | Type | Default | Values | Integrators | What it sets |\n"
+          "|---|---|---|---|---|---|---|\n";
   const Settings all = IntegratorSettings();
   for (const auto& [setting, value] : all.All()) {
     std::string integrators;
@@ -63,8 +63,7 @@ std::string Page() {
         setting->fallbackText.empty() ? setting->Format(setting->fallback) : setting->fallbackText;
     const std::string inScenes = setting->isInScenes ? "`" + setting->NameInScenes() + "`" : "";
     page << "| `--" << setting->name << "` | " << inScenes << " | " << Kind(*setting) << " | " << Cell(fallback)
-         << " | " << Cell(Values(*setting)) << " | " << integrators << " | " << Cell(setting->help) << " | "
-         << (setting->changesPicture ? "" : "yes") << " |\n";
+         << " | " << Cell(Values(*setting)) << " | " << integrators << " | " << Cell(setting->help) << " |\n";
   }
   page << "\nThe integrators:\n\n| Integrator | What it finds light by |\n|---|---|\n";
   for (const IntegratorType& type : IntegratorRegistry())

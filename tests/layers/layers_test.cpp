@@ -60,7 +60,7 @@ const std::map<std::string, std::set<std::string>> kMayKnow = {
     {"scene", {"base", "math", "spectral"}},
     {"geometry", {"base", "math"}},
     {"media", {"base", "math", "spectral", "sampling", "scene", "geometry"}},
-    {"film", {"base", "math"}},
+    {"film", {"base", "math", "spectral"}},
     {"denoise", {"base", "math", "film"}},
     {"textures", {"base", "math", "spectral", "sampling", "scene", "geometry", "film"}},
     {"materials", {"base", "math", "spectral", "sampling", "scene", "geometry", "media", "film", "textures"}},

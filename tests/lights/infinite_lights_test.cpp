@@ -76,6 +76,24 @@ TEST(DistantDisk, IlluminanceIsWhatAFacingSurfaceReceives) {
   }
 }
 
+// A placement that stretches makes another cone of the disk; the surface faces its axis.
+TEST(DistantDisk, IlluminanceIsThatOfThePlacedCone) {
+  const Transform placements[] = {Transform::Scale({1, 2, 0.5}),
+                                  Transform::Scale({1, 1, 4}) * Transform::Rotate(30, {1, 0, 0}),
+                                  Transform::Rotate(70, {1, 2, 0}) * Transform::Scale({-3, 1, 1})};
+  for (const Transform& placement : placements) {
+    for (const char* angle : {"0", "0.53", "40", "170", "270", "360"}) {
+      const Vector3 facing = glm::normalize(placement.ToAffine().Vector(kFacing));
+      const auto lit = Build("distant", std::string("\"float illuminance\" 7 \"float angle\" ") + angle, placement);
+      EXPECT_NEAR(Irradiance(*lit, facing), 7, 0.1) << angle;
+      const auto sun = Build("distant", std::string("\"bool normalize\" true \"float angle\" ") + angle, placement);
+      if (std::atof(angle) <= 90) {
+        EXPECT_NEAR(Irradiance(*sun, facing), 1, 0.015) << angle;
+      }
+    }
+  }
+}
+
 TEST(DistantDisk, WithoutThemLIsRadiance) {
   const auto sun = Build("distant", "\"float angle\" 60 \"rgb L\" [ 2 3 4 ] \"float exposure\" 1");
   EXPECT_EQ(Seen(*sun, kFacing), Color(4, 6, 8));
@@ -186,6 +204,22 @@ std::vector<float> SixAxes(const test::BuiltLight& built) {
 }
 
 class SkyImages : public test::SkyImageTest {};
+
+TEST_F(SkyImages, IlluminanceIsThatOfThePlacedSky) {
+  Write("square.exr", 16, 16, [](int i) { return i % 7 == 3 ? 9.0f : 1.0f; });
+  Write("wide.exr", 32, 16, [](int i) { return i % 5 == 2 ? 5.0f : 0.5f; });
+  const Transform placements[] = {Transform(), Transform::Rotate(40, {1, 1, 0}) * Transform::Scale({2, -2, 2}),
+                                  Transform::Scale({1, 2, 0.5}),
+                                  Transform::Rotate(70, {1, 2, 0}) * Transform::Scale({-3, 1, 1})};
+  for (const char* file : {"square.exr", "wide.exr"}) {
+    for (const Transform& placement : placements) {
+      const auto sky =
+          Make("infinite", std::string("\"string filename\" \"") + file + "\" \"float illuminance\" 3", placement);
+      const Vector3 up = glm::normalize(placement.ToAffine().Vector(Vector3(0, 0, 1)));
+      EXPECT_NEAR(Irradiance(*sky, up), 3, 0.1) << file;
+    }
+  }
+}
 
 TEST_F(SkyImages, DomeIsOrientedAsOpenExrSays) {
   // 64 columns of longitude +π to -π in 32 rows: bands 5° wide would do; the poles' rows are told apart by 100 and 200,

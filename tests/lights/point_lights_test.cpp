@@ -142,6 +142,8 @@ TEST_F(PointLights, PowerByQuadratureUnderAllTransforms) {
                                                         {"projection", wide + "\"float power\" 5"},
                                                         {"projection", wide + "\"float fov\" 140"},
                                                         {"spot", "\"float coneangle\" 70"},
+                                                        {"spot", "\"float power\" 5"},
+                                                        {"point", "\"float shaping:cone:angle\" 50 \"float power\" 5"},
                                                         {"point", ""}};
   for (const auto& [type, parameters] : lights) {
     for (size_t i = 0; i < std::size(transforms); ++i) {
@@ -149,6 +151,9 @@ TEST_F(PointLights, PowerByQuadratureUnderAllTransforms) {
       const auto light = Make(type, parameters, transforms[i]);
       const Color power = PowerByQuadrature(*light);
       EXPECT_GT(power.g, 0);
+      if (parameters.find("power") != std::string::npos) {
+        EXPECT_NEAR(power.Luminance(), 5, i < 2 ? 0.015 : 0.05);
+      }
       ExpectColor(light->light->GetPowerEstimate(light->context), power, i < 2 ? 3e-3f : 1e-2f);
     }
   }

@@ -63,6 +63,8 @@ TEST(NearestName, FindsTyposOnly) {
   EXPECT_EQ(NearestName("trianglmesh", known), "trianglemesh");
   EXPECT_EQ(NearestName("dsik", known), "disk");
   EXPECT_EQ(NearestName("teapot", known), "");
+  const std::string endless(1 << 20, 'a');  // the distance would take hours
+  EXPECT_EQ(NearestName(endless, {endless + "b"}), "");
   EXPECT_EQ(DidYouMean("plymehs", known), " (did you mean \"plymesh\"?)");
   EXPECT_EQ(DidYouMean("nurbs", known), "");
   // Names of pbrt-v3, where the one of today is known.

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "film/image_colors.h"
 #include "film/srgb.h"
 #include "support/temporary_folder.h"
 
@@ -217,10 +218,33 @@ TEST(Hdr, ReadsTheSkyOfTheReferenceScenes) {
   EXPECT_GT(largest, 1.0f);  // linear: the sun is brighter than white
 }
 
+// Rendering needs colours in gamut; comparing pictures needs the linear map.
+TEST(ImageColors, OutOfGamut) {
+  Image image(2, 1, {"R", "G", "B"});
+  image.chromaticities = {0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767};  // ACEScg
+  image.data = {0.5f, 1e-6f, 0.5f, 0.5f, -1e-6f, 0.5f};
+  const Image limited = InRec709(image, WhiteHandling::Adapt, GamutHandling::Limit);
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(limited.At(0, 0, c), limited.At(1, 0, c), 1e-4);
+  EXPECT_GT(limited.RgbAt(0, 0).r, limited.RgbAt(0, 0).b + 0.1f);
+  EXPECT_GE(limited.RgbAt(0, 0).g, 0);
+  const Image kept = InRec709(image, WhiteHandling::Adapt, GamutHandling::Keep);
+  EXPECT_LT(kept.RgbAt(0, 0).g, -0.01f);
+  EXPECT_FALSE(NeedsConversion(kept, WhiteHandling::Adapt));
+  Image white = image;
+  white.data = {1, 1, 1, 1, 1, 1};
+  white = InRec709(white, WhiteHandling::Adapt, GamutHandling::Keep);
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(white.At(0, 0, c), 1, 1e-3);
+}
+
 TEST(Srgb, CurveIsContinuousAndInvertible) {
   EXPECT_NEAR(SrgbToLinear(0.5f), 0.21404114f, 1e-6f);
   EXPECT_NEAR(LinearToSrgb(0.18f), 0.46135613f, 1e-6f);
   for (int i = 0; i <= 1000; ++i) EXPECT_NEAR(LinearToSrgb(SrgbToLinear(i / 1000.0f)), i / 1000.0f, 2e-6f);
+}
+
+TEST(ImageClass, LayersOfAnotherSizeAreRefused) {
+  Image image(2, 2, {"R"});
+  EXPECT_THROW(AppendChannels(image, Image(2, 1, {"N.X"})), Error);
 }
 
 TEST(ImageClass, RgbAtGrayAndLayers) {
@@ -235,6 +259,8 @@ TEST(ImageClass, RgbAtGrayAndLayers) {
   reversed.data = {3.0f, 2.0f, 1.0f};
   EXPECT_EQ(reversed.RgbAt(0, 0), Color(1, 2, 3));
   EXPECT_FALSE(Image(1, 1, {"variance.R", "variance.G"}).HasRgb());
+  EXPECT_FALSE(Image(1, 1, {"X", "Y", "Z"}).HasRgb());  // Y is a part of these colours
+  EXPECT_FALSE(Image(1, 1, {"BY", "RY", "Y"}).HasRgb());
   EXPECT_EQ(gray.ChannelIndex("R"), -1);
 }
 

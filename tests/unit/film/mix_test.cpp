@@ -54,6 +54,15 @@ TEST(Mix, OneFactorOfAllGroupsKeepsTheVariance) {
   ExpectPlace(mixed);
 }
 
+TEST(Mix, NeedsThePicture) {
+  Image layer(1, 1, {"key.R", "key.G", "key.B"});
+  layer.metadata["lampyr.lightGroups"] = "key";
+  EXPECT_THROW(MixLayers(layer, {{"key", Color(2.0f)}}), Error);
+  Image partial = Picture(4);
+  partial.channels[4] = "other.G";  // a variance of R and B alone
+  EXPECT_EQ(MixLayers(partial, {{"key", Color(2.0f)}, {"rest", Color(2.0f)}}).RgbAt(0, 0), Color(8.0f));
+}
+
 TEST(Mix, OfOtherLayersThePictureGetsTheDifference) {
   EXPECT_EQ(MixLayers(Picture(4), {{"caustic", Color(3.0f)}}).RgbAt(0, 0), Color(4.5f));
 }

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "geometry/ply.h"
+#include "geometry/polygon.h"
 
 namespace lampyr {
 namespace {
@@ -63,6 +64,59 @@ void CheckSquare(const PlyMesh& mesh) {
   ASSERT_EQ(mesh.quads.size(), 1u);
   EXPECT_EQ(mesh.quads[0], (std::array<uint32_t, 4>{0, 1, 2, 3}));
   EXPECT_EQ(mesh.faceIndices, (std::vector<int>{10, 12, 12, 12, 11}));
+}
+
+// A pentagon with a notch, from whichever corner it is listed, before or after its vertices.
+TEST(Ply, NotchesStayOpen) {
+  const std::string header = "ply\nformat ascii 1.0\n",
+                    vertex =
+                        "element vertex 5\nproperty float x\nproperty float y\n"
+                        "property float z\n",
+                    face = "element face 1\nproperty list uchar int vertex_index\n";
+  const std::string positions = "2 0 0\n2 4 4\n2 4 0\n2 0 4\n2 2 1\n";
+  const std::vector<uint32_t> around = {0, 2, 1, 4, 3};
+  for (const bool isReversed : {false, true}) {
+    for (size_t start = 0; start < around.size(); ++start) {
+      std::string corners = "5";
+      for (size_t i = 0; i < around.size(); ++i)
+        corners += " " + std::to_string(around[(isReversed ? start + 5 - i : start + i) % 5]);
+      const std::string files[] = {header + vertex + face + "end_header\n" + positions + corners + "\n",
+                                   header + face + vertex + "end_header\n" + corners + "\n" + positions};
+      for (const std::string& file : files) {
+        const PlyMesh mesh = ParsePly(file, "notch.ply");
+        ASSERT_EQ(mesh.triangles.size(), 3u);
+        double size = 0;
+        for (const auto& t : mesh.triangles) {
+          const Vector3 a = mesh.positions[t[1]] - mesh.positions[t[0]],
+                        b = mesh.positions[t[2]] - mesh.positions[t[0]];
+          const double area = 0.5 * static_cast<double>(glm::cross(a, b).x) * (isReversed ? -1 : 1);
+          EXPECT_GE(area, 0) << corners;
+          size += area;
+        }
+        EXPECT_NEAR(size, 10, 1e-6) << corners;
+      }
+    }
+  }
+}
+
+// A comb: every second corner is in a notch. Each triangle lies in the polygon, and together they are it.
+TEST(Ply, EarsOfACombAreThePolygon) {
+  std::vector<Point3> positions = {{20, 0, 0}, {0, 0, 0}};
+  for (int i = 0; i <= 20; ++i)
+    positions.emplace_back(static_cast<float>(i), i % 2 ? 1.0f : 9.0f, 0.1f * static_cast<float>(i));
+  std::swap(positions[0], positions[1]);
+  std::vector<uint32_t> corners = {0, 1};
+  for (uint32_t i = 0; i <= 20; ++i) corners.push_back(22 - i);
+  EXPECT_FALSE(IsFan(positions, corners));
+  const std::vector<TriangleCorners> triangles = CutEars(positions, corners);
+  ASSERT_EQ(triangles.size(), corners.size() - 2);
+  double size = 0;
+  for (const TriangleCorners& t : triangles) {
+    const Vector3 a = positions[t[1]] - positions[t[0]], b = positions[t[2]] - positions[t[0]];
+    EXPECT_GE(glm::cross(a, b).z, 0);
+    size += 0.5 * static_cast<double>(glm::cross(a, b).z);
+  }
+  EXPECT_NEAR(size, 100, 1e-3);  // twenty trapezoids of 1 × (9 + 1) / 2
 }
 
 class TemporaryFile {

@@ -74,6 +74,26 @@ TEST(Ies, TiltIsOfTheLuminaireNotOfTheDirection) {
   EXPECT_NEAR(At(*ReadIes(file.string(), {}), 0, 0), 7, 1e-12);
 }
 
+// Wrong counts, or decimal commas, would make another lamp of the same numbers. Remarks and an end of file of DOS are
+// none.
+TEST(Ies, NumbersThatAreLeftOverAreAnError) {
+  const std::string right = File("0 45 90", "0", "1000 900 0");
+  const auto error = [&](const std::string& text) -> std::string {
+    try {
+      ParseIes(text, "a.ies");
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error(right + "\x1a"), "");
+  EXPECT_EQ(error(right + "END\n"), "");
+  EXPECT_NE(error(right + "5 6\n").find("a.ies:10:1: error: the file has more than the 3 candela values"),
+            std::string::npos)
+      << error(right + "5 6\n");
+  EXPECT_NE(error(File("0 45 90", "0", "1000,5 900,5 0,0")).find("decimal commas"), std::string::npos);
+}
+
 TEST(Ies, OnePlaneStandsForAll) {
   const auto profile = ParseIes(File("0 30 90", "0", "10 40 0"), "a.ies");
   for (const double phi : {0.0, 91.0, 359.9, 360.0, -45.0}) {

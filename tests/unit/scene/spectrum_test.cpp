@@ -186,24 +186,49 @@ TEST(Spectrum, CurvesOfPowerAreRelativeToDaylight) {
   EXPECT_EQ(dark.Largest(), 0);
 }
 
+// Lines narrower than the table of a curve keep their power, wherever they are.
+TEST(Spectrum, CurvesOfLinesHaveTheirColours) {
+  for (const double width : {1e-3, 0.02, 0.7, 3.0}) {
+    for (const double at : {500.0, 500.016, 600.031, 550.49}) {
+      const std::vector<SpectrumSample> lines = {{at - width, 0}, {at, 1},     {at + width, 0},
+                                                 {640, 0},        {640.01, 2}, {640.02, 0}};
+      const SpectralCurve curve = CurveOf(lines, SpectrumRole::Unbounded);
+      double power = 0;
+      for (size_t i = 0; i < SpectralCurve::kCount; ++i) power += curve.Entry(i);
+      EXPECT_NEAR(power, width + 0.02, 1e-9 + 1e-6 * width);
+    }
+  }
+  const std::vector<SpectrumSample> ends = {{500.25, 2}, {600.5, 4}};
+  EXPECT_NEAR(CurveOf(ends, SpectrumRole::Unbounded).At(500), 2 + 0.25 * 0.25 * 0.5 * 2 / 100.25, 1e-12);
+  EXPECT_NEAR(CurveOf(ends, SpectrumRole::Extinction).At(500), 0.25 * (2 + 0.125 * 2 / 100.25), 1e-12);
+  EXPECT_EQ(CurveOf(ends, SpectrumRole::Unbounded).At(450), 2);
+  EXPECT_EQ(CurveOf(ends, SpectrumRole::Unbounded).At(700), 4);
+}
+
 TEST(Spectrum, PairsAreChecked) {
   const auto error = [](const std::vector<double>& numbers) {
-    return ErrorOf([&] { SpectrumFromPairs(numbers, {}); });
+    return ErrorOf([&] { SpectrumFromPairs(numbers, SpectrumRole::Unbounded, {}); });
   };
   EXPECT_THAT(error({400, 1, 500}), HasSubstr("3 numbers are not a multiple of 2"));
   EXPECT_THAT(error({400, 1}), HasSubstr("at least 2 pairs"));
   EXPECT_THAT(error({400, 1, 400, 2}), HasSubstr("pair 2 of the spectrum does not have a longer wavelength"));
   EXPECT_THAT(error({400, 1, 500, -2}), HasSubstr("pair 2 of the spectrum has a negative value"));
   EXPECT_THAT(error({0, 1, 500, 2}), HasSubstr("not above 0 nm"));
+  EXPECT_THAT(error({0.4, 1, 0.7, 2}), HasSubstr("Are these micrometres?"));
+  const auto reflectance = [](double value) { SpectrumFromPairs({400, 0.5, 700, value}, SpectrumRole::Albedo, {}); };
+  EXPECT_THAT(ErrorOf([&] { reflectance(40); }), HasSubstr("pair 2 of the spectrum has a value above 1"));
+  EXPECT_NO_THROW(reflectance(1.02));  // of measurements
 }
 
 TEST(Spectrum, FilesAndNamesThroughParameters) {
   const TemporaryFolder folder;
   folder.Write("flat.spd", "# flat\n300 0.25\n900 0.25\n");
   folder.Write("bad.spd", "300 0.25\n400 x\n");
-  const auto scene = folder.Write("s.pbrt",
-                                  "WorldBegin\nShape \"s\" \"spectrum a\" \"flat.spd\" \"spectrum b\" \"bad.spd\"\n"
-                                  "\"spectrum c\" \"metal-au-eta\" \"spectrum d\" [ 300 .5 900 .5 ]");
+  folder.Write("percent.spd", "# percent\n300 0.25\n400 25\n");
+  const auto scene =
+      folder.Write("s.pbrt",
+                   "WorldBegin\nShape \"s\" \"spectrum a\" \"flat.spd\" \"spectrum b\" \"bad.spd\"\n"
+                   "\"spectrum c\" \"metal-au-eta\" \"spectrum d\" [ 300 .5 900 .5 ] \"spectrum e\" \"percent.spd\"");
   Diagnostics strict(Diagnostics::Mode::Strict);
   const SceneDescription description = ReadScene(scene, strict);
   const ParameterList& list = description.shapes.at(0).shape.parameters;
@@ -215,6 +240,8 @@ TEST(Spectrum, FilesAndNamesThroughParameters) {
       scene.string() +
           ":3:1: error: \"metal-au-eta\" is neither a spectrum's name nor a file (did you mean \"metal-Au-eta\"?)");
   ExpectColor(list.GetColor("d", {}, SpectrumRole::Albedo), Color(0.5f), 1e-6f);
+  EXPECT_THAT(ErrorOf([&] { list.FindColor("e", SpectrumRole::Albedo); }),
+              HasSubstr("percent.spd:3:1: error: pair 2 of the spectrum has a value above 1"));
 }
 
 TEST(ColorSpace, PublishedMatrices) {
