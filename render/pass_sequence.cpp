@@ -81,14 +81,20 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
 namespace {
 
 // Samples per pixel from which on camera paths may be guided beside photons that are not. Photons for which a guide
-// pays are mostly known to by then. Half as many are enough to begin to record.
-constexpr uint32_t kPhotonsFirst = 32;
+// pays are mostly known to by then; where a guide of photons seems useless, a few samples are enough. Half as many are
+// enough to begin to record.
+constexpr uint32_t kPhotonsFirst = 32, kPhotonsFirstIfUseless = 4;
 
 }  // namespace
 
+bool PassSequence::PhotonsAreSettled(uint32_t samples, uint32_t part) const {
+  if (!guiding_ || !guiding_->IsRecording()) return true;
+  return samples >= (guiding_->SeemsUseless() ? kPhotonsFirstIfUseless : kPhotonsFirst) / part;
+}
+
 bool PassSequence::RecordsPathsAfter(uint32_t samples) const {
   if (!paths_ || !paths_->IsRecording()) return false;
-  return settings_.AlwaysGuidesPaths() || !guiding_ || !guiding_->IsRecording() || samples >= kPhotonsFirst / 2;
+  return settings_.AlwaysGuidesPaths() || PhotonsAreSettled(samples, 2);
 }
 
 // Called at milestones: after 2^n samples.
@@ -96,7 +102,7 @@ void PassSequence::Learn(uint32_t samples) {
   bool changesDensities = false;
   const bool hasRecords = RecordsPathsAfter(samples / 2);
   const bool photonsAreSettled =
-      !guiding_ || !guiding_->IsRecording() || (samples >= kPhotonsFirst && !guiding_->Guide());
+      !guiding_ || !guiding_->IsRecording() || (PhotonsAreSettled(samples, 1) && !guiding_->Guide());
   if (learning_ && learning_->IsRecording()) {
     const bool wasUsed = selection_->IsUsed();
     selection_->Decide(samples);

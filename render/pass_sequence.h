@@ -60,6 +60,8 @@ class PassSequence {
   void AddPass(uint32_t done, uint32_t count);
   void Learn(uint32_t samples);
   // True if the camera paths after `samples` samples per pixel are recorded for path guiding.
+  // After so many samples, or a `part` of those that it takes, it is known whether photons will be guided.
+  bool PhotonsAreSettled(uint32_t samples, uint32_t part) const;
   bool RecordsPathsAfter(uint32_t samples) const;
   void StartStage(uint32_t done);
   void MakePhotonStore();

@@ -19,6 +19,8 @@ constexpr size_t kMostRemembered = 2 * kMostUseful + 2 * kMostOfAPass;
 // Smallest gain for which a guide is used. It must outweigh the cost of evaluating the guide's density for every light
 // path, shadow ray and hit.
 constexpr double kWorthwhile = 2;
+// A gain below which none is expected.
+constexpr double kUseless = 1.2;
 // Smallest effective number of photons for a verdict: a sum of squares may be dominated by a few.
 constexpr double kFewestTested = 8;
 // Samples per pixel at which recording ends: with a verdict, when most of what can be learned is known, and without
@@ -119,6 +121,10 @@ std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
     evidence.back().secondMoment *= like.secondMoment;
   }
   return evidence;
+}
+
+bool EmissionLearning::SeemsUseless() const {
+  return hasVerdict_ && gain_ < kUseless && !guide_;
 }
 
 void EmissionLearning::Learn(const PhotonUse& use) {

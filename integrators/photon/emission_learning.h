@@ -38,6 +38,8 @@ class EmissionLearning {
 
   // Squared error of the photons' sums without a guide, over that with the candidate, as estimated by the last verdict.
   double Gain() const { return gain_; }
+  // The last verdict was so far below what a guide has to gain that further photons will hardly change it.
+  bool SeemsUseless() const;
   int Components() const { return guide_ ? guide_->ComponentCount() : 0; }
 
   // Saves all that was learned. To be called between passes.

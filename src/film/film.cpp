@@ -318,12 +318,19 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
       }
     }
   };
+  // Every band sees all splats, most of which fall into others; their pixels are not fetched.
+  const auto reachesBand = [&](const Point2& film) {
+    const int first = firstPixel(film.y, radius.y, crop_.y0, crop_.y1) / kGroup;
+    const int last = lastPixel(film.y, radius.y, crop_.y0 - 1, crop_.y1 - 1) / kGroup;
+    return last - first + 1 >= bands || (band - first % bands + bands) % bands <= last - first;
+  };
   uint64_t firstPath = lightPaths_ + 1;  // 0 denotes no path
   for (const SplatList& list : lists) {
     for (const Splat& splat : list.Splats()) {
       // Splats fall anywhere on the film.
       constexpr ptrdiff_t kAhead = 4;
-      if (&list.Splats().back() - &splat >= kAhead) PrefetchSplats((&splat)[kAhead].film);
+      if (&list.Splats().back() - &splat >= kAhead && reachesBand((&splat)[kAhead].film))
+        PrefetchSplats((&splat)[kAhead].film);
       spread(splat.film, [&](size_t pixel, float weight) {
         splats_[pixel].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
         if (isInHalf) AddTo(layerSplats_[(pixel + 1) * layers_.size() - 1], weight, splat.value);
