@@ -258,6 +258,13 @@ size_t AdaptiveSquare::MakeCells(int parts) {
   return cells_.size();
 }
 
+Point2d AdaptiveSquare::MiddleOf(size_t cell) const {
+  for (const Node& node : nodes_) {
+    if (node.cell == static_cast<int>(cell)) return {node.x + 0.5 * node.size, node.y + 0.5 * node.size};
+  }
+  return Point2d(0.5);
+}
+
 size_t AdaptiveSquare::CellOf(double x, double y) const {
   size_t index = 0;
   while (nodes_[index].cell < 0) index = ChildAt(nodes_[index], x, y);

@@ -42,6 +42,7 @@ class AdaptiveSquare {
   size_t MakeCells(int parts);
   const std::vector<Estimate>& Cells() const { return cells_; }
   size_t CellOf(double x, double y) const;
+  Point2d MiddleOf(size_t cell) const;
 
   // Integrals of `count` functions evaluated at shared points: new points in the same leaves.
   using Functions = std::function<void(double x, double y, std::span<double> values)>;

@@ -1,7 +1,9 @@
 #include "suite/checks.h"
 
 #include <cstdio>
+#include <exception>
 #include <mutex>
+#include <new>
 
 #include "base/parallel.h"
 
@@ -157,6 +159,19 @@ std::optional<FixedStart> FindFixedStart(const SuiteSubject& subject, FixedPart 
     return std::nullopt;
   }
   return std::nullopt;
+}
+
+void WithoutExceptions(const std::string& name, const std::string& caseName, SuiteReport& report,
+                       const std::function<void()>& check) {
+  try {
+    check();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    const auto* located = dynamic_cast<const Error*>(&error);
+    if (located && located->Where().line > 0) throw;
+    report.AddError(name, "exceptions", caseName + ": it has thrown: " + error.what(), 1, 0.5);
+  }
 }
 
 SuiteReport RunCases(size_t count, const SuiteOptions& options,

@@ -33,6 +33,11 @@ struct Receiver {
   Point3 position;
 };
 
+// Calls `check`. A std::exception that it throws is a failure of "exceptions", unless it is for want of memory or an
+// Error with a location, which is one of the parameters.
+void WithoutExceptions(const std::string& name, const std::string& caseName, SuiteReport& report,
+                       const std::function<void()>& check);
+
 // Checks `count` cases in parallel.
 SuiteReport RunCases(size_t count, const SuiteOptions& options,
                      const std::function<void(size_t index, SuiteReport& report)>& check);

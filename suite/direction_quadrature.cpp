@@ -122,7 +122,11 @@ double DirectionQuadrature::Test(std::span<const Vector3d> directions, double dr
         at = i;
       }
     }
-    const Vector3d middle = observed[at] > 0 ? middles[at] / observed[at] : Vector3d(0.0);
+    const auto which = static_cast<size_t>(std::upper_bound(first.begin(), first.end(), at) - first.begin()) - 1;
+    const Part& part = parts_[which];
+    const Point2d ofCell = part.square.MiddleOf(at - first[which]);
+    const Vector3d middle =
+        observed[at] > 0 ? middles[at] / observed[at] : part.cap.Direction(part.cap.wMax * ofCell.x, ofCell.y);
     char text[200];
     std::snprintf(text, sizeof(text), "of %.0f draws %.0f went around the direction %.3f %.3f %.3f; expected %.1f",
                   draws, observed[at], middle.x, middle.y, middle.z, expected[at]);

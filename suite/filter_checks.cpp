@@ -42,6 +42,7 @@ class FunctionCheck {
         first_(edges_.Filter(*filter_, ContextAt(0))) {}
 
   void Run() {
+    CheckManyEdges();
     CheckRepeat();
     CheckBatches();
     if (case_.changes.empty()) CheckThreads();
@@ -66,6 +67,7 @@ class FunctionCheck {
     for (size_t i = 0; i < order.size(); ++i) ExpectFirst(order[i], found[i], how, worst);
   }
 
+  void CheckManyEdges();
   void CheckRepeat();
   void CheckBatches();
   void CheckThreads();
@@ -154,20 +156,43 @@ void FunctionCheck::CheckLightPdf() {
   worst.Report(case_, "light-pdf", report_);
 }
 
+// By how much a colour is negative; kNoNumber: it is not finite.
+double Invalidity(const Color& color) {
+  const float least = std::min({color.r, color.g, color.b, 0.0f});
+  return std::isfinite(color.r + color.g + color.b) ? -static_cast<double>(least) : kNoNumber;
+}
+
+// Asks for many edges, because a filter may be wrong for few only. Has its own random numbers.
+void FunctionCheck::CheckManyEdges() {
+  constexpr size_t kManyEdges = 2048;
+  constexpr uint64_t kOther = 0x65646765;
+  Rng rng(Hash(case_.seed, kOther));
+  WorstEdge worst(0);
+  for (size_t asked = 0; asked < kManyEdges;) {
+    const EdgeBatch edges = case_.Edges(rng);
+    const std::vector<Filtered> left = edges.Filter(*filter_, ContextAt(0));
+    for (size_t i = 0; i < left.size(); ++i) {
+      for (const Color& found : {left[i].diffuse, left[i].specular})
+        worst.Note(Invalidity(found), [&] { return edges.Say(i) + ": there is left " + Say(found); });
+    }
+    if (edges.Size() == 0) break;
+    asked += edges.Size();
+  }
+  FilterCase many = case_;
+  many.caseName += ", many edges";
+  worst.Report(many, "valid", report_);
+}
+
 // Checks white light, and coloured light of any strength.
 void FunctionCheck::CheckValid() {
   WorstEdge worst(0);
-  const auto error = [](const Color& color) {
-    const float least = std::min({color.r, color.g, color.b, 0.0f});
-    return std::isfinite(color.r + color.g + color.b) ? -static_cast<double>(least) : kNoNumber;
-  };
   EdgeBatch light = edges_;
   for (int round = 0; round < 3; ++round) {
     const std::vector<Filtered> left = light.Filter(*filter_, ContextAt(0));
     for (size_t i = 0; i < left.size(); ++i) {
       for (const bool isDiffuse : {true, false}) {
         const Color& found = isDiffuse ? left[i].diffuse : left[i].specular;
-        worst.Note(error(found), [&] {
+        worst.Note(Invalidity(found), [&] {
           const Color& given = isDiffuse ? light.diffuse[i] : light.specular[i];
           return light.Say(i) + ": of the light " + Say(given) + " for " + (isDiffuse ? "diffuse" : "specular") +
                  " lobes there is left " + Say(found);

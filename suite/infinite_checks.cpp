@@ -174,6 +174,7 @@ void InfiniteChecker::CheckPhotons() {
     const Vector3d direction(photon->direction), offset = Vector3d(photon->position) - Vector3d(scene_.center);
     plane = std::max(plane, std::abs(glm::dot(offset, direction) / radius_ + 1));
     multipliers = std::max(multipliers, MultiplierMismatch(subject_, *photon));
+    edge = std::max(edge, std::abs(static_cast<double>(photon->emissionCosine) - 1));
     const Point3 P = FarEnd(*photon);
     const auto e = light_.EvaluateSamples(subject_.context, HitAlong(-photon->direction, P), P);
     if (!isDelta_) {

@@ -26,8 +26,8 @@
 //   bounds               photons leave within GetEmissionBounds
 //   estimate             no estimate is 0 where a sample arrives
 //   segment              no light arrives on a segment of a ray outside of the range that the light's estimate gives,
-//                        also without an end; χ² of equiangular distances in it from points of the light (the density of
-//                        these is pdfEmit: emission-positions)
+//                        also without an end; χ² of equiangular distances in it from points of the light (the density
+//                        of these is pdfEmit: emission-positions)
 //   multipliers          diffuse and specular parts are one emission, each times the light's multiplier
 //   camera               a camera sees what receivers see, and nothing of a delta
 //   bidirectional        without it only the densities of emission are missing: all else is compared bit by bit

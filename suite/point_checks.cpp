@@ -203,6 +203,7 @@ void PointChecker::CheckPhotons() {
     specular.Note(photon.specular, sample->specular, d2);
     edge = std::max(edge, RelativeDifference(Value(photon.pdfEmit), Value(sample->pdfEmit)));
     edge = std::max(edge, static_cast<double>(glm::length(sample->direction + photon.direction)) > 1e-3 ? 1.0 : 0.0);
+    edge = std::max(edge, std::abs(static_cast<double>(photon.emissionCosine) - 1));
     CheckEstimatesAt(P, missed);
   }
   report_.AddError(subject_.name, "emission-edge", subject_.caseName,

@@ -24,7 +24,10 @@ const std::vector<PropertyMeaning>& PropertyMeanings() {
       {"emission-integral", "the densities of emission must integrate to the share of photons that are made"},
       {"emission-positions", "photons must start as pdfEmit says"},
       {"emission-directions", "photons must leave as pdfEmitDirection says"},
-      {"emission-edge", "EvaluateSamples must give back radiance and densities of a photon, where it lands"},
+      {"emission-edge",
+       "EvaluateSamples must give back radiance and densities of a photon, where it lands; emissionCosine must be that "
+       "of "
+       "its direction to the normal, 1 for points and lights at infinity"},
       {"emission-origin", "a photon's place must not depend on the random numbers of its direction"},
       {"shines-from", "a photon must light what lies beyond shinesFrom and nothing before; 0 where CanBeAimed is true"},
       {"power", "photons must carry the power that direct sampling measures on a sphere around the light"},
@@ -40,6 +43,7 @@ const std::vector<PropertyMeaning>& PropertyMeanings() {
       {"repeat", "the same question must have the same answer, in any order and on any thread"},
       {"parameters", "a parameter that all lights have must do what it says, and nothing else"},
       {"edit", "an edited light must be, bit by bit, the one that is made afresh"},
+      {"exceptions", "a light must not throw once it is made"},
       {"selection", "the probabilities of all lights must sum to 1, and none that contributes may have 0"},
   };
   return meanings;

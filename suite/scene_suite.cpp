@@ -95,7 +95,9 @@ std::vector<SuiteResult> RunPdfSuiteOnScene(const LightingServices& services, co
     for (const float time : {0.0f, 0.5f, 1.0f}) {
       if (time > 0 && !placed.motion) break;
       const bool isThorough = time == 0 && lights.size() <= kThoroughLights;
-      CheckPlaced(placed, lights[index], services.SceneSphere(), time, isThorough, options, report);
+      suite::WithoutExceptions(lights[index].name, "", report, [&] {
+        CheckPlaced(placed, lights[index], services.SceneSphere(), time, isThorough, options, report);
+      });
     }
   });
   if (!lights.empty()) CheckSelection(services, options, all);

@@ -49,6 +49,7 @@ class SegmentChecker {
 
   Segment ChooseSegment(int index);
   bool Arrives(const Point3& P);
+  static bool IsInOrder(const Segment& segment, const SegmentEstimate& estimate);
   void CheckSegment(const Segment& segment);
   void CheckPoint(const Segment& segment, const std::optional<SegmentEstimate>& estimate, float t);
   void CheckDistances();
@@ -117,11 +118,15 @@ void SegmentChecker::CheckPoint(const Segment& segment, const std::optional<Segm
     Miss(segment, estimate, t, "light arrives, outside of the range that the estimate gives");
 }
 
+bool SegmentChecker::IsInOrder(const Segment& segment, const SegmentEstimate& estimate) {
+  return estimate.radiance < kInfinity && estimate.minT >= 0 && estimate.minT <= estimate.maxT &&
+         estimate.maxT <= segment.length;
+}
+
 void SegmentChecker::CheckSegment(const Segment& segment) {
   const auto estimate =
       light_.GetIncidentRadianceEstimate(subject_.context, segment.origin, segment.direction, segment.length);
-  const bool isInOrder = !estimate || (estimate->radiance < kInfinity && estimate->minT >= 0 &&
-                                       estimate->minT <= estimate->maxT && estimate->maxT <= segment.length);
+  const bool isInOrder = !estimate || IsInOrder(segment, *estimate);
   if (!isInOrder) Miss(segment, estimate, segment.through, "the estimate is not finite, or its range not in order");
   const float reach = std::min(segment.length, segment.through + 8 * size_);
   CheckPoint(segment, estimate, segment.through);
@@ -147,7 +152,7 @@ void SegmentChecker::CheckDistances() {
     const auto estimate =
         light_.GetIncidentRadianceEstimate(subject_.context, segment.origin, segment.direction, segment.length);
     const auto photon = light_.GenerateEmission(RandomContext(subject_, rng_));
-    if (!estimate || !photon) continue;
+    if (!estimate || !photon || !IsInOrder(segment, *estimate)) continue;
     const EquiangularDistance distances(segment.origin, segment.direction, photon->position, estimate->minT,
                                         estimate->maxT);
     if (distances.IsEmpty()) continue;
@@ -166,7 +171,7 @@ void SegmentChecker::CheckDistances() {
     }
     for (int draw = 0; draw < kDraws; ++draw) {
       const auto cell = static_cast<int>(kCells * distances.Invert(distances.Sample(rng_.NextFloat())));
-      observed[first + static_cast<size_t>(std::min(cell, kCells - 1))] += 1;
+      observed[first + static_cast<size_t>(std::clamp(cell, 0, kCells - 1))] += 1;
     }
   }
   errors.resize(observed.size(), 0.02 * kDraws / kCells);

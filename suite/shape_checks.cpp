@@ -284,6 +284,8 @@ void ShapeChecker::CheckEmission() {
       continue;
     }
     edge = std::max(edge, e ? Mismatch(*photon, *e, light_.Opacity(hit)) : 1.0);
+    const auto cosine = std::abs(static_cast<double>(glm::dot(photon->normal, photon->direction)));
+    edge = std::max(edge, std::abs(cosine - static_cast<double>(photon->emissionCosine)));
     multipliers = std::max(multipliers, MultiplierMismatch(subject_, *photon));
   }
   const Estimate share = LatticeMean(rng_, 128, 64, [&](const float(&x)[4]) {

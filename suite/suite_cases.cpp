@@ -251,9 +251,11 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) co
     subject.diffuseMultiplier = parameters.GetFloat("diffuse", 1);
     subject.specularMultiplier = parameters.GetFloat("specular", 1);
   }
-  if (options_.parts & kParameterPart)
-    CheckParametersOf(suiteCase, subject, {suiteCase.type, &parameters, &build, {}}, report);
-  CheckLight(subject, options_, report);
+  suite::WithoutExceptions(subject.name, subject.caseName, report, [&] {
+    if (options_.parts & kParameterPart)
+      CheckParametersOf(suiteCase, subject, {suiteCase.type, &parameters, &build, {}}, report);
+    CheckLight(subject, options_, report);
+  });
   return report;
 }
 

@@ -258,6 +258,8 @@ void CheckIntersection(const SuiteSubject& subject, const SurfaceTracer& tracer,
     const auto hit = hitOf(ray, 0, kInfinite);
     if (!hit) return false;
     if (!(hit->t > 0)) return note("a ray with tMin %g is hit at %g", 0, hit->t);
+    if (const double length = glm::length(hit->normal); !(std::abs(length - 1) < kSlack))
+      return note("a hit at t = %g has a normal of length %g", hit->t, length);
     if (const double off = glm::length(ray.origin + hit->t * ray.direction - hit->position); !(off < kSlack * size))
       return note("a hit at t = %g is %g off the ray", hit->t, off);
     for (int axis = 0; axis < 3; ++axis) {

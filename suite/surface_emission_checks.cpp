@@ -90,8 +90,8 @@ void ComparePhoton(const SuiteSubject& subject, const SurfaceTracer& tracer, con
     return;
   }
   errors.edge = std::max(errors.edge, e ? Mismatch(photon, *e, subject.light->Opacity(hit)) : 1.0);
-  errors.edge = std::max(errors.edge, std::abs(static_cast<double>(glm::dot(photon.normal, photon.direction))) -
-                                          static_cast<double>(photon.emissionCosine));
+  const auto cosine = std::abs(static_cast<double>(glm::dot(photon.normal, photon.direction)));
+  errors.edge = std::max(errors.edge, std::abs(cosine - static_cast<double>(photon.emissionCosine)));
   errors.multipliers = std::max(errors.multipliers, MultiplierMismatch(subject, photon));
   if (!cells.Holds(tracer.ToLocal(Point3d(photon.position)))) errors.outside = 1;
   // A ray along the normal, from outside, must find the photon's own point.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "forwarding_light.h"
 #include "suite/checks.h"
@@ -48,6 +49,9 @@ enum class HiddenFault {
   EvaluationOfLastSample,
   PhotonsWearOut,    // after some hundred
   StateOfItsThread,  // right on the thread that asked first
+  SharedNumbers,     // keeps the random numbers of a call in itself while it answers
+  CosineOfPhotonsOne,
+  RangeFromFarBefore,  // of a segment: from -∞ on
 };
 
 class HiddenFaultLight final : public ForwardingLight {
@@ -64,7 +68,12 @@ class HiddenFaultLight final : public ForwardingLight {
     const float estimate = Sound().GetIncidentRadianceEstimate(context, P);
     return Is(HiddenFault::EstimateOfTime) && context.time > 0.5f ? 0.5f * estimate : estimate;
   }
-  using ForwardingLight::GetIncidentRadianceEstimate;
+  std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext& context, const Point3& origin,
+                                                             const Vector3& direction, float length) const override {
+    auto estimate = Sound().GetIncidentRadianceEstimate(context, origin, direction, length);
+    if (estimate && Is(HiddenFault::RangeFromFarBefore)) estimate->minT = -kInfinity;
+    return estimate;
+  }
   std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override {
     auto bounds = Sound().GetEmissionBounds(context);
     if (bounds && Is(HiddenFault::NoEnergy)) bounds->energy = 0;
@@ -104,7 +113,7 @@ class HiddenFaultLight final : public ForwardingLight {
   Point3 middle_;
   float size_;
   mutable std::atomic<int> photons_{0};
-  mutable std::atomic<float> lastU_{-1}, lastPdf_{0};
+  mutable std::atomic<float> lastU_{-1}, lastPdf_{0}, sharedU_{0};
 };
 
 template <class Result>
@@ -132,6 +141,11 @@ inline std::optional<LightSample> HiddenFaultLight::GenerateSamples(const LightC
                                                                     const Point3& P) const {
   LightContext used = context;
   if (Is(HiddenFault::PositionOfTime)) used.u.x = std::fmod(context.u.x + 0.37f * context.time, 1.0f);
+  if (Is(HiddenFault::SharedNumbers)) {
+    sharedU_ = context.u.x;
+    std::this_thread::yield();
+    used.u.x = sharedU_;
+  }
   auto sample = Sound().GenerateSamples(used, P);
   if (!sample) return sample;
   Spoil(context, sample->direction, std::abs(glm::dot(sample->normal, sample->direction)), sample->distance, *sample);
@@ -162,6 +176,7 @@ inline std::optional<EmissionSample> HiddenFaultLight::GenerateEmission(const Li
   photon->pdfEmitDirection = SpoiltDirection(photon->pdfEmitDirection, photon->direction);
   SpoilPlace(*photon);
   if (Is(HiddenFault::ShinesFromFarAway)) photon->shinesFrom = 1e9f;
+  if (Is(HiddenFault::CosineOfPhotonsOne)) photon->emissionCosine = Sound().Kind() == LightKind::Area ? 1.0f : 0.5f;
   if (Is(HiddenFault::UvwOfPhotonsConstant)) photon->uvw = Point3(0.25f, 0.5f, 0);
   if (Is(HiddenFault::RadianceOfTime)) {
     photon->diffuse *= 1 + 0.5f * context.time;

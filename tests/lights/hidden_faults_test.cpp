@@ -68,7 +68,19 @@ TEST_F(HiddenFaults, OfWhatWasAskedBefore) {
                  {HiddenFault::EvaluationOfLastSample, {"square", "rect", "sun", "portal"}, {"repeat"}, {}},
                  {HiddenFault::PhotonsWearOut, kOfEachKind, {"repeat"}, {"multipliers", "emission-edge", "power"}},
                  {HiddenFault::StateOfItsThread, {"square", "rect", "sun", "portal"}, {"repeat"}, {}},
+                 {HiddenFault::SharedNumbers, {"square", "rect", "sun", "portal"}, {"repeat"}, {}},
              });
+}
+
+TEST_F(HiddenFaults, OfSegments) {
+  ExpectEach(kSegmentPart, {{HiddenFault::RangeFromFarBefore, {"square", "rect", "point", "spot"}, {"segment"}, {}}});
+}
+
+TEST_F(HiddenFaults, OfTheCosineOfPhotons) {
+  ExpectEach(kDensityPart, {{HiddenFault::CosineOfPhotonsOne,
+                             {"square", "ball", "rect", "disk", "point", "spot", "sun"},
+                             {"emission-edge"},
+                             {"power", "power-estimate"}}});
 }
 
 TEST_F(HiddenFaults, OfWhatGoesWithASample) {

@@ -37,6 +37,7 @@ enum class Fault {
   ModifierTooLow,
   ModifierIsNoNumber,
   IsIdentityAlways,
+  Throws,
 };
 
 class WrongFilter final : public LightFilter {
@@ -55,6 +56,7 @@ class WrongFilter final : public LightFilter {
   }
 
   void Filter(const FilterContext& context, const FilterSamples& samples) const override {
+    if (fault_ == Fault::Throws) throw std::runtime_error("the lamp broke");
     const std::vector<Color> diffuse(samples.diffuse, samples.diffuse + samples.count);
     sound_->Filter(context, samples);
     ++calls_;
@@ -324,7 +326,11 @@ TEST_F(WrongFilters, AreCaughtChangingNothing) {
   ExpectNamed(type, {"samples"}, {}, "a sample of density 0");
 }
 
-// A plugin's filter that throws is an error with its own words.
+TEST_F(WrongFilters, ThatThrowWhenAskedAreFound) {
+  ExpectNamed(With("barn", Fault::Throws), {"exceptions"}, {}, "throws");
+}
+
+// A plugin's filter that refuses its parameters is an error with its own words.
 TEST_F(WrongFilters, ThatThrowAreErrors) {
   const FilterType type = With("barn", [](const Create&) -> Create {
     return [](const ParameterList& parameters, const FilterBuildContext&) -> std::unique_ptr<LightFilter> {

@@ -100,6 +100,23 @@ TEST_F(WrongParameters, MayBeRefusedOnSomeShapes) {
   }
 }
 
+class ThrowingLight final : public ForwardingLight {
+ public:
+  using ForwardingLight::ForwardingLight;
+  std::optional<EmissionSample> GenerateEmission(const LightContext&) const override {
+    throw std::runtime_error("the bulb broke");
+  }
+};
+
+// A light that throws is named with its case, and does not keep others from being checked.
+TEST_F(WrongParameters, ExceptionsAreOfACase) {
+  LightType type = Plain("point", false);
+  type.create = [create = type.create](const ParameterList& parameters, const LightBuildContext& build) {
+    return std::make_unique<ThrowingLight>(create(parameters, build));
+  };
+  EXPECT_TRUE(FailuresOf(type).count("exceptions"));
+}
+
 TEST_F(WrongParameters, ThatAreIgnoredAreFound) {
   for (const LightType& type : Types()) {
     for (const char* name : {"intensity", "exposure", "color", "colorTemperature", "diffuse", "specular",
