@@ -128,16 +128,21 @@ void CheckAreaEstimates(const SuiteSubject& subject, const Enclosure& enclosure,
   report.AddError(subject.name, "estimate", subject.caseName + " " + receiver.name, missed, 0.5);
 }
 
+double EmittingSide(const EmissionBounds& bounds, const Vector3d& normal) {
+  return !bounds.twoSided && bounds.cosThetaO >= 1 && glm::dot(normal, Vector3d(bounds.axis)) < 0 ? -1 : 1;
+}
+
 bool LeavesBounds(const EmissionBounds& bounds, const Enclosure& enclosure, const EmissionSample& photon) {
   const Vector3 slack = Vector3(1e-4f * static_cast<float>(enclosure.radius)) + 4.0f * photon.positionError;
   const bool inBox = glm::all(glm::greaterThanEqual(photon.position, bounds.box.min - slack)) &&
                      glm::all(glm::lessThanEqual(photon.position, bounds.box.max + slack));
-  float cosine = glm::dot(photon.normal, bounds.axis);
+  const Normal3 normal = photon.normal * static_cast<float>(EmittingSide(bounds, Vector3d(photon.normal)));
+  float cosine = glm::dot(normal, bounds.axis);
   if (bounds.twoSided) cosine = std::abs(cosine);
   if (!inBox || cosine < bounds.cosThetaO - 1e-3f) return true;
   if (IsBlack(photon)) return false;  // a sampled direction without emission
   // Within θe of the normal on its emitting side.
-  float emission = glm::dot(photon.normal, photon.direction);
+  float emission = glm::dot(normal, photon.direction);
   if (bounds.twoSided) emission = std::abs(emission);
   return emission < bounds.cosThetaE - 1e-3f;
 }

@@ -42,6 +42,10 @@ double SolidAngleToAreaMismatch(const LightSample& sample);
 void CheckAreaEstimates(const SuiteSubject& subject, const Enclosure& enclosure, const Receiver& receiver, Rng& rng,
                         SuiteReport& report);
 
+// -1 where a flat light shines to its inner side alone (a two-sided one behind a cone), as its bounds say; otherwise 1.
+// `normal`: unit, of the outer side.
+double EmittingSide(const EmissionBounds& bounds, const Vector3d& normal);
+
 // True if a photon leaves outside the light's emission bounds.
 bool LeavesBounds(const EmissionBounds& bounds, const Enclosure& enclosure, const EmissionSample& photon);
 

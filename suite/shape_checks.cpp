@@ -62,8 +62,7 @@ class ShapeChecker {
         extent_(model_.Measure()),
         enclosure_{extent_.middle, extent_.radius},
         rng_(MakeRng(subject, options)) {
-    const std::optional<EmissionBounds> bounds = light_.GetEmissionBounds(subject.context);
-    oneSided_ = bounds && !bounds->twoSided;
+    bounds_ = light_.GetEmissionBounds(subject.context);
   }
 
   void Run() {
@@ -110,7 +109,7 @@ class ShapeChecker {
   EmitterModel::Extent extent_;
   Enclosure enclosure_;
   Rng rng_;
-  bool oneSided_ = false;
+  std::optional<EmissionBounds> bounds_;
 };
 
 bool ShapeChecker::IsInside(const Point3& P) const {
@@ -141,7 +140,8 @@ Quadrature ShapeChecker::Integrate(const Point3& P, int subdivisions) const {
     result.camera = std::max(result.camera, CameraMismatch(subject_, hit, evaluation).value_or(0.0));
     if (!evaluation) return;
     const double radiance = Emitted(subject_, *evaluation), pdf = Value(evaluation->pdfDirect);
-    if (oneSided_ && cosine < -1e-4) result.leak = std::max(result.leak, radiance > 0 ? 1.0 : 0.0);
+    if (bounds_ && !bounds_->twoSided && cosine * EmittingSide(*bounds_, element.normal) < -1e-4)
+      result.leak = std::max(result.leak, radiance > 0 ? 1.0 : 0.0);
     if (IsHidden(element, P, inside) || std::abs(cosine) < kEdgeOn) return;
     const double solidAngle = std::abs(cosine) / squared * area;
     if (radiance == 0) {

@@ -18,8 +18,7 @@ class SurfaceReceiverChecker {
   SurfaceReceiverChecker(const SuiteSubject& subject, const SuiteOptions& options, const SurfaceTracer& tracer,
                          Rng& rng, SuiteReport& report)
       : subject_(subject), light_(*subject.light), options_(options), tracer_(tracer), rng_(rng), report_(report) {
-    const std::optional<EmissionBounds> bounds = light_.GetEmissionBounds(subject.context);
-    oneSided_ = bounds && !bounds->twoSided;
+    bounds_ = light_.GetEmissionBounds(subject.context);
   }
 
   void Check(const Receiver& receiver);
@@ -44,7 +43,7 @@ class SurfaceReceiverChecker {
   const SurfaceTracer& tracer_;
   Rng& rng_;
   SuiteReport& report_;
-  bool oneSided_ = false;
+  std::optional<EmissionBounds> bounds_;
   double leak_ = 0, compared_ = 0, cameraDiffers_ = 0;  // by rounding, on the edge of a beam
   // Largest contributions, radiance over pdfDirect: of the directions of the quadrature, and of the samples.
   double brightest_ = 0, brightestMet_ = 0;
@@ -60,7 +59,8 @@ Integrands SurfaceReceiverChecker::At(const Point3& P, const Vector3d& direction
     ++compared_;
     cameraDiffers_ += CameraMismatch(subject_, hit, e).value_or(0.0) > 1e-4 ? 1 : 0;
     // A surface of two sides may be dark on one, and be sampled there all the same.
-    if (oneSided_ && cosine < 0 && e && !IsBlack(*e)) leak_ = 1;
+    const bool isBack = bounds_ && !bounds_->twoSided && cosine * EmittingSide(*bounds_, found->normal) < 0;
+    if (isBack && e && !IsBlack(*e)) leak_ = 1;
   }
   if (!e || IsBlack(*e) || std::abs(cosine) < kEdgeOn) return {};
   if (!e->pdfDirect.IsZero()) brightest_ = std::max(brightest_, Emitted(subject_, *e) / Value(e->pdfDirect));

@@ -48,6 +48,13 @@ Vector3 ShapedDirections::PrimaryAxis(const LightTransform& transform) const {
   return ToRenderDirection(AxesUnder(transform, scratch).map, Vector3(0, 0, -1));
 }
 
+bool ShapedDirections::IsAlong(const LightTransform& transform, const Normal3& normal) const {
+  LightTransform scratch;
+  const Vector3 local = normal * AxesUnder(transform, scratch).map.toRender.linear;  // of the plane: Mᵀ n
+  constexpr float kRounding = 1e-4f;
+  return std::max(std::abs(local.x), std::abs(local.y)) < kRounding * std::abs(local.z);
+}
+
 Color ShapedDirections::Factor(const LightTransform& transform, const Vector3& outgoing) const {
   LightTransform scratch;
   return shaping_->Factor(AxesUnder(transform, scratch).ToLocal(outgoing));

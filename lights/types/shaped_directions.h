@@ -40,6 +40,9 @@ class ShapedDirections {
 
   // -z of the shaping in render space, unit.
   Vector3 PrimaryAxis(const LightTransform& transform) const;
+  // True if the axis is along the normal of a flat surface, in the space of the shaping. `normal`: unit, in render
+  // space.
+  bool IsAlong(const LightTransform& transform, const Normal3& normal) const;
   // True if nothing is emitted towards +z, even by a two-sided surface.
   bool IsBackDark() const { return isBackDark_; }
   const Shaping& Parts() const { return *shaping_; }

@@ -101,7 +101,8 @@ float SurfaceEmission::ApparentPower(const LightContext& context, const Emission
 }
 
 void SurfaceEmission::NarrowFlat(const LightTransform& transform, EmissionBounds& bounds) const {
-  if (!shaped_) return;
+  // About an oblique axis a cone may reach both sides, and beyond its own angle from the normal.
+  if (!shaped_ || !shaped_->IsAlong(transform, bounds.axis)) return;
   if (shaped_->IsBackDark() && bounds.twoSided) {
     // The side of the primary axis shines, which may be the inner one.
     if (glm::dot(bounds.axis, shaped_->PrimaryAxis(transform)) < 0) bounds.axis = -bounds.axis;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <thread>
@@ -143,7 +144,7 @@ inline std::optional<LightSample> HiddenFaultLight::GenerateSamples(const LightC
   if (Is(HiddenFault::PositionOfTime)) used.u.x = std::fmod(context.u.x + 0.37f * context.time, 1.0f);
   if (Is(HiddenFault::SharedNumbers)) {
     sharedU_ = context.u.x;
-    std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::microseconds(20));  // threads meet on a busy machine, too
     used.u.x = sharedU_;
   }
   auto sample = Sound().GenerateSamples(used, P);
