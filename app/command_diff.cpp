@@ -35,7 +35,7 @@ void Print(const ImageDifference& difference) {
   }
 }
 
-// Both images have to be of one colour space.
+// Images are compared in one colour space, whatever theirs are.
 Image ReadInRec709(const std::filesystem::path& file) {
   return InRec709(ReadImage(file), WhiteHandling::Adapt, GamutHandling::Keep);
 }

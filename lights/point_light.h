@@ -8,8 +8,7 @@
 //   Vector3 Sample(transform, u)                a direction of emission
 //   PdfSolidAngle Density(transform, direction) its density: never 0 where Shape is not
 //   double or Color SolidAngle(transform)       ∫ Shape dω, to float precision where the transform keeps angles;
-//   elsewhere
-//                                               `power` is off by as much as this is
+//                                               an error of it elsewhere is one of `power`
 //   void SetCones(transform, bounds)            axis and angles of the emission bounds
 //   bool Clip(transform, from, origin, direction, minT, maxT)
 //                                               cuts a ray's [minT, maxT] to what is reached; false when that is

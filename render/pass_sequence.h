@@ -59,9 +59,10 @@ class PassSequence {
  private:
   void AddPass(uint32_t done, uint32_t count);
   void Learn(uint32_t samples);
-  // True if the camera paths after `samples` samples per pixel are recorded for path guiding.
-  // After so many samples, or a `part` of those that it takes, it is known whether photons will be guided.
+  // True if it is known after `samples` samples per pixel whether photons will be guided. `part`: divides the number of
+  // samples that this takes (2: half as many are enough).
   bool PhotonsAreSettled(uint32_t samples, uint32_t part) const;
+  // True if the camera paths after `samples` samples per pixel are recorded for path guiding.
   bool RecordsPathsAfter(uint32_t samples) const;
   void StartStage(uint32_t done);
   void MakePhotonStore();

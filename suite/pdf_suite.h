@@ -17,11 +17,13 @@
 //   uvw                  the coordinates that a ray finds there; a uniform light may leave them at 0
 //   emission-integral    the densities of emission integrate to 1
 //   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection, and moments
-//   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge
+//   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge, and its
+//   emissionCosine
+//                        is that of its direction (1 for points and lights at infinity)
 //   emission-origin      a photon's place does not depend on its direction, even on a dark one
 //   shines-from          a photon lights what is beyond shinesFrom, nothing before; it is 0 where CanBeAimed is true
 //   power                by emission = by direct sampling on an enclosing sphere
-//   power-estimate       GetPowerEstimate: exact where it is a closed form, near otherwise
+//   power-estimate       GetPowerEstimate, as exact as light.h asks for
 //   energy               of the bounds: the power estimate times importanceMultiplier
 //   bounds               photons leave within GetEmissionBounds
 //   estimate             no estimate is 0 where a sample arrives
@@ -32,7 +34,9 @@
 //   camera               a camera sees what receivers see, and nothing of a delta
 //   bidirectional        without it only the densities of emission are missing: all else is compared bit by bit
 //   time                 nothing depends on it except the placement, which is given
-//   repeat               the same query gives the same result: in another order, on another thread, at the end
+//   repeat               the same query gives the same result: in another order, on another thread, on two at once, at
+//                        the end
+//   exceptions           nothing is thrown once the light is made
 //   parameters           those of all lights (intensity, exposure, …, cameraVisible) have their documented effect
 //   edit                 an edited light equals one made afresh, bit by bit, for each parameter of its type
 #pragma once

@@ -26,8 +26,7 @@ const std::vector<PropertyMeaning>& PropertyMeanings() {
       {"emission-directions", "photons must leave as pdfEmitDirection says"},
       {"emission-edge",
        "EvaluateSamples must give back radiance and densities of a photon, where it lands; emissionCosine must be that "
-       "of "
-       "its direction to the normal, 1 for points and lights at infinity"},
+       "of its direction to the normal, 1 for points and lights at infinity"},
       {"emission-origin", "a photon's place must not depend on the random numbers of its direction"},
       {"shines-from", "a photon must light what lies beyond shinesFrom and nothing before; 0 where CanBeAimed is true"},
       {"power", "photons must carry the power that direct sampling measures on a sphere around the light"},

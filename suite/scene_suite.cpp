@@ -95,7 +95,8 @@ std::vector<SuiteResult> RunPdfSuiteOnScene(const LightingServices& services, co
     for (const float time : {0.0f, 0.5f, 1.0f}) {
       if (time > 0 && !placed.motion) break;
       const bool isThorough = time == 0 && lights.size() <= kThoroughLights;
-      suite::WithoutExceptions(lights[index].name, "", report, [&] {
+      const std::string when = placed.motion ? "time " + std::to_string(time) : "as placed";
+      suite::WithoutExceptions(lights[index].name, when, report, [&] {
         CheckPlaced(placed, lights[index], services.SceneSphere(), time, isThorough, options, report);
       });
     }

@@ -10,6 +10,7 @@
 #include "app/compare/mean_of_images.h"
 #include "app/compare/neighbourhood.h"
 #include "base/version.h"
+#include "film/image_colors.h"
 #include "integrators/photon/photon_settings.h"
 #include "render/settings/integrator_choice.h"
 #include "sampling/rng.h"
@@ -57,7 +58,7 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
                         const std::string& sceneHash) {
   Reference reference;
   try {
-    reference.image = ReadImage(file);
+    reference.image = InRec709(ReadImage(file), WhiteHandling::Adapt, GamutHandling::Keep);
   } catch (const Error& error) {
     throw UsageError("--reference: " + error.Text());
   }

@@ -140,7 +140,8 @@ void PrintReference(const ComparisonResults& results, std::string& text) {
 }
 
 void PrintSnapshots(const ComparisonResults& results, std::string& text) {
-  text += Format("\n%-6s %9s %8s  %-30s %-30s %s\n", "", "time", "spp", "MSE (95 %)", "relMSE (95 %)", "FLIP");
+  text += Format("\n%-6s %9s %8s  %-30s %-30s %s\n", "", results.ofProcessor ? "CPU time" : "time", "spp", "MSE (95 %)",
+                 "relMSE (95 %)", "FLIP");
   bool anyOpen = false;
   for (const ComparedIntegrator& integrator : results.integrators) {
     for (const ComparedSnapshot& snapshot : integrator.snapshots) {

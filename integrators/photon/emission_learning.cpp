@@ -29,7 +29,7 @@ constexpr uint32_t kLearned = 64, kLastLearned = 4096;
 // The same with the verdict that guiding would increase the error.
 constexpr uint32_t kHopeless = 8;
 
-// Useful photons of a light from which on its guess is no longer used.
+// Useful photons of a light from which on its guess is no longer used; and of all lights, for a verdict to be trusted.
 constexpr size_t kManyUseful = 256;
 // The initial guess:
 constexpr float kRare = 5;        // guide if more than a third of the photons are sent more than so many times as often
@@ -124,7 +124,7 @@ std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
 }
 
 bool EmissionLearning::SeemsUseless() const {
-  return hasVerdict_ && gain_ < kUseless && !guide_;
+  return hasVerdict_ && gain_ < kUseless && !guide_ && useful_.size() >= kManyUseful;
 }
 
 void EmissionLearning::Learn(const PhotonUse& use) {

@@ -38,7 +38,7 @@ class EmissionLearning {
 
   // Squared error of the photons' sums without a guide, over that with the candidate, as estimated by the last verdict.
   double Gain() const { return gain_; }
-  // The last verdict was so far below what a guide has to gain that further photons will hardly change it.
+  // The last verdict is far below the gain that a guide needs, and rests on many photons.
   bool SeemsUseless() const;
   int Components() const { return guide_ ? guide_->ComponentCount() : 0; }
 

@@ -3,8 +3,9 @@
 //
 // Without `angle`, L is the irradiance in W/m² of a surface that faces the light. With an angle of 2θ, L is the
 // radiance in W/(m² sr) of all directions within θ. `normalize` divides it by UsdLux's size factor, π sin²θ up to 90°
-// and π (2 - sin²θ) beyond, so that a small disk gives the irradiance of parallel light; `illuminance` makes it such
-// that a facing surface receives that times L.
+// and π (2 - sin²θ) beyond, so that a small disk gives the irradiance of parallel light; under a transform that does
+// not keep angles, by that integral of the placed cone. `illuminance` makes it such that a facing surface receives that
+// times L.
 //
 // The disk is a cone in local directions: under a transform that does not keep angles it becomes an ellipse. It enters
 // as w = 1 - cosθ, half the squared chord to the axis, so that nothing cancels; sampled uniformly in it.

@@ -132,7 +132,8 @@ bool Image::HasRgb() const {
   if (ChannelIndex("R") >= 0 && ChannelIndex("G") >= 0 && ChannelIndex("B") >= 0) return true;
   if (channels.size() == 1) return true;
   const auto has = [this](const char* name) { return ChannelIndex(name) >= 0; };
-  return has("Y") && !has("X") && !has("Z") && !has("RY") && !has("BY");  // otherwise Y is a part of a colour
+  const bool isXyz = has("X") && has("Z");                // Z alone is depth
+  return has("Y") && !isXyz && !has("RY") && !has("BY");  // otherwise Y is a part of a colour
 }
 
 std::vector<size_t> ChannelOrder(const std::vector<std::string>& names) {

@@ -6,8 +6,9 @@
 
 namespace lampyr {
 
-// What becomes of colours outside of the gamut. Limit: the nearest colour of Rec. 709 with the same luminance, as a
-// renderer needs them; negative components of the image count as 0. Keep: they have negative components.
+// What becomes of colours outside of the gamut. Limit: negative components become 0 and the others are scaled to the
+// same luminance, as a renderer needs them; negative components of the image count as 0. Keep: components stay
+// negative.
 enum class GamutHandling { Keep, Limit };
 
 // R, G and B in Rec. 709, without chromaticities. Pixels that are not finite stay as they are. Images without

@@ -386,7 +386,9 @@ void ReadFaces(const Element& element, ValueReader& reader, uint64_t vertexCount
         SkipValue(p, reader);
       }
     }
-    if (corners.size() > 4) polygons.push_back({i, mesh.triangles.size(), corners});
+    // Where the positions are known already, only polygons with notches are kept.
+    if (corners.size() > 4 && (mesh.positions.size() < vertexCount || !IsFan(mesh.positions, corners)))
+      polygons.push_back({i, mesh.triangles.size(), corners});
     AddFace(corners, faceIndex, mesh, indices);
   }
   if (hasIndices) {

@@ -1,5 +1,6 @@
 #include "geometry/polygon.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lampyr {
@@ -47,10 +48,13 @@ std::vector<Point2d> Projected(const std::vector<Point3>& positions, std::span<c
 
 bool IsFan(const std::vector<Point3>& positions, std::span<const uint32_t> corners) {
   const Vector3d area = AreaOf(positions, corners), origin(positions[corners[0]]);
-  const double rounding = 1e-12 * glm::dot(area, area);
+  double largest = 0;
+  for (const uint32_t corner : corners)
+    largest = std::max(largest, static_cast<double>(MaxAbsComponent(positions[corner])));
+  const double rounding = 0x1p-22 * largest * glm::length(area);  // of positions in float, per length of a side
   for (size_t k = 2; k < corners.size(); ++k) {
     const Vector3d a = Vector3d(positions[corners[k - 1]]) - origin, b = Vector3d(positions[corners[k]]) - origin;
-    if (glm::dot(glm::cross(a, b), area) < -rounding) return false;
+    if (glm::dot(glm::cross(a, b), area) < -rounding * (glm::length(a) + glm::length(b))) return false;
   }
   return true;
 }

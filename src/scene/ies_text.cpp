@@ -123,7 +123,9 @@ class IesText {
   void CheckNoNumberFollows(size_t count) {
     SkipSeparators();
     const size_t end = std::min(text_.find_first_of(kSeparators, position_), text_.size());
-    if (AtEnd() || !LooksLikeNumber(text_.substr(position_, end - position_))) return;
+    const std::string_view word = text_.substr(position_, end - position_);
+    const bool isNumber = LooksLikeNumber(word) && word.find_first_not_of("+-.0123456789eE") == std::string_view::npos;
+    if (AtEnd() || !isNumber) return;
     throw Error(Here(), "the file has more than the " + std::to_string(count) +
                             " candela values that it announces: its counts are wrong, or its numbers have decimal "
                             "commas, which separate numbers here");

@@ -81,7 +81,12 @@ void TextureLibrary::Add(const TextureDescription& description, const Transform&
     for (size_t i = 0; i < kRoles.size(); ++i) {
       nesting = {};
       request.role = kRoles[i];
-      variants[i] = type.makeColor(request);
+      try {
+        variants.of[i] = type.makeColor(request);
+      } catch (const Error& error) {
+        if (request.role != SpectrumRole::Albedo) throw;
+        variants.noAlbedo = error;
+      }
     }
     nesting.Check("textures", allNames_.size(), description.texture.where);
     colorTextures_.emplace(description.name, Named<ColorVariants>{std::move(variants), nesting});
@@ -135,7 +140,8 @@ std::optional<ColorParameter> TextureLibrary::FindColor(const ParameterList& par
     const auto found = colorTextures_.find(*texture);
     if (found == colorTextures_.end()) ThrowUnknownTexture(parameters, name, *texture, true);
     const auto& [variants, nesting] = found->second;
-    const ColorParameter& value = variants[IndexOf(role)];
+    if (role == SpectrumRole::Albedo && variants.noAlbedo) throw *variants.noAlbedo;
+    const ColorParameter& value = variants.of[IndexOf(role)];
     if (beingMade_ && !value.IsConstant()) beingMade_->Add(nesting);
     return value;
   }

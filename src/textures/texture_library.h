@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "film/image.h"
 #include "geometry/geometry_scene.h"
 #include "scene/nesting.h"
@@ -51,7 +52,10 @@ class TextureLibrary {
 
  private:
   // A colour texture for each SpectrumRole, which determines how its spectra become RGB.
-  using ColorVariants = std::array<ColorParameter, 4>;
+  struct ColorVariants {
+    std::array<ColorParameter, 4> of;
+    std::optional<Error> noAlbedo;  // why it is no reflectance: an error of what uses it as one
+  };
   template <class Value>
   struct Named {
     Value value;

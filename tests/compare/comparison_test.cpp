@@ -283,6 +283,13 @@ TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
   }
 }
 
+TEST(ComparedScene, TimesOfTheProcessorAreOverTheThreads) {
+  BuiltScene built = Build(kCamera + kLamp);
+  built.choiceTime = {1000, 0.2};
+  EXPECT_EQ(ComparedScene(built, 2, kNever, true).ChoiceSeconds("auto"), 0.1);
+  EXPECT_EQ(ComparedScene(built, 2, kNever).ChoiceSeconds("auto"), 1000);
+}
+
 // Trial renders and references are made when the choice is.
 TEST(ComparedScene, TimeOfTheChoiceIsPartOfComparedRendersAlone) {
   BuiltScene built = Build(kCamera + kLamp);

@@ -261,6 +261,7 @@ TEST(ImageClass, RgbAtGrayAndLayers) {
   EXPECT_FALSE(Image(1, 1, {"variance.R", "variance.G"}).HasRgb());
   EXPECT_FALSE(Image(1, 1, {"X", "Y", "Z"}).HasRgb());  // Y is a part of these colours
   EXPECT_FALSE(Image(1, 1, {"BY", "RY", "Y"}).HasRgb());
+  EXPECT_TRUE(Image(1, 1, {"Y", "Z"}).HasRgb());  // gray with depth
   EXPECT_EQ(gray.ChannelIndex("R"), -1);
 }
 

@@ -88,6 +88,7 @@ TEST(Ies, NumbersThatAreLeftOverAreAnError) {
   };
   EXPECT_EQ(error(right + "\x1a"), "");
   EXPECT_EQ(error(right + "END\n"), "");
+  EXPECT_EQ(error(right + "2x36W T8\n"), "");
   EXPECT_NE(error(right + "5 6\n").find("a.ies:10:1: error: the file has more than the 3 candela values"),
             std::string::npos)
       << error(right + "5 6\n");

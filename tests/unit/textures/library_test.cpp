@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scene/scene_parser.h"
 #include "support/temporary_folder.h"
 #include "texture_scene.h"
 #include "textures/texture_library.h"
@@ -24,6 +25,20 @@ TEST(TextureLibrary, ParametersWithoutTextures) {
   EXPECT_NEAR(color.r, 0.1f, 1e-6f);
   EXPECT_NEAR(color.b, 0.3f, 1e-6f);
   EXPECT_THROW(scene.library.GetFloat(list, "reflectance", 1), Error);
+}
+
+// An index of refraction is no reflectance, and need not be one: only what uses it as such is an error.
+TEST(TextureLibrary, SpectraAboveOneAreNoReflectances) {
+  const TemporaryFolder folder;
+  const auto file = folder.Write("s.pbrt",
+                                 "WorldBegin\nTexture \"eta\" \"spectrum\" \"constant\" \"spectrum value\" [ 300 1.5 "
+                                 "900 1.5 ]\nShape \"s\" \"texture x\" \"eta\"");
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const SceneDescription description = ReadScene(file, diagnostics);
+  const TextureLibrary library(description.textures, Transform(), diagnostics);
+  const ParameterList& list = description.shapes.at(0).shape.parameters;
+  EXPECT_NEAR(library.GetColor(list, "x", Color(0.0f), SpectrumRole::Unbounded).Evaluate({}).g, 1.5f, 1e-5f);
+  EXPECT_THROW(library.GetColor(list, "x", Color(0.0f), SpectrumRole::Albedo), Error);
 }
 
 TEST(TextureLibrary, TexturesThatDoNotVaryAreConstants) {
