@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "scene/scene_parser.h"
 #include "support/temporary_folder.h"
 #include "texture_scene.h"
@@ -30,9 +32,10 @@ TEST(TextureLibrary, ParametersWithoutTextures) {
 // An index of refraction is no reflectance, and need not be one: only what uses it as such is an error.
 TEST(TextureLibrary, SpectraAboveOneAreNoReflectances) {
   const TemporaryFolder folder;
-  const auto file = folder.Write("s.pbrt",
-                                 "WorldBegin\nTexture \"eta\" \"spectrum\" \"constant\" \"spectrum value\" [ 300 1.5 "
-                                 "900 1.5 ]\nShape \"s\" \"texture x\" \"eta\"");
+  const std::filesystem::path file = folder / "s.pbrt";
+  std::ofstream(file)
+      << "WorldBegin\nTexture \"eta\" \"spectrum\" \"constant\" \"spectrum value\" [ 300 1.5 900 1.5 ]\n"
+         "Shape \"s\" \"texture x\" \"eta\"";
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const SceneDescription description = ReadScene(file, diagnostics);
   const TextureLibrary library(description.textures, Transform(), diagnostics);
