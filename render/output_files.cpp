@@ -6,12 +6,34 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <string>
 
 #include "base/error.h"
 #include "film/atomic_file.h"
 
 namespace lampyr {
+
+namespace {
+
+// Signals that end the process wait as long as this lives: a file that exists for a moment is not left behind.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigset_t waiting;
+    sigemptyset(&waiting);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&waiting, signal);
+    pthread_sigmask(SIG_BLOCK, &waiting, &before_);
+  }
+  ~SignalsWait() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsWait(const SignalsWait&) = delete;
+  SignalsWait& operator=(const SignalsWait&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+}  // namespace
 
 void CheckWritable(const std::filesystem::path& path, const std::string& option) {
   std::filesystem::path folder;
@@ -31,6 +53,7 @@ void CheckWritable(const std::filesystem::path& path, const std::string& option)
     throw UsageError(option + ": \"" + path.string() + "\" is a folder");
   }
   // Permissions alone are not conclusive: the file is created to find out.
+  const SignalsWait signalsWait;
   try {
     const AtomicFile probe(path);
   } catch (const Error& error) {
