@@ -219,7 +219,8 @@ TEST_F(MisbehavingTypes, LightsThatThrowWhileTheSceneIsBuilt) {
 
 TEST_F(MisbehavingTypes, InTheSuite) {
   const std::string plugin = " --plugin '" + FaultyPlugin("behaviour").string() + "'";
-  ExpectSays(Run("check-lights --type throws-in-samples" + plugin), 1, {"expected no exception, found one: burnt out"});
+  ExpectSays(Run("check-lights --type throws-in-samples" + plugin), 1,
+             {"FAILED throws-in-samples[0]", "exceptions", "it has thrown: burnt out"});
   ExpectSays(Run("check-lights --type makes-null" + plugin), 1, {"expected a light, found null"});
 }
 
