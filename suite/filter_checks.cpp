@@ -156,7 +156,7 @@ void FunctionCheck::CheckLightPdf() {
   worst.Report(case_, "light-pdf", report_);
 }
 
-// By how much a colour is negative; kNoNumber: it is not finite.
+// Size of the most negative component; kNoNumber if a component is not finite.
 double Invalidity(const Color& color) {
   const float least = std::min({color.r, color.g, color.b, 0.0f});
   return std::isfinite(color.r + color.g + color.b) ? -static_cast<double>(least) : kNoNumber;

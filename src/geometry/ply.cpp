@@ -323,7 +323,7 @@ struct Polygon {
   std::vector<uint32_t> corners;
 };
 
-// As a fan; ReplaceFans looks at the positions, which may come after the faces.
+// Splits a face as a fan. ReplaceFans corrects it once all positions are read, which may come after the faces.
 void AddFace(const std::vector<uint32_t>& corners, int faceIndex, PlyMesh& mesh, FaceIndices& indices) {
   if (corners.size() == 4) {
     mesh.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
@@ -386,7 +386,7 @@ void ReadFaces(const Element& element, ValueReader& reader, uint64_t vertexCount
         SkipValue(p, reader);
       }
     }
-    // Where the positions are known already, only polygons with notches are kept.
+    // If the positions are read already, only polygons with notches are kept.
     if (corners.size() > 4 && (mesh.positions.size() < vertexCount || !IsFan(mesh.positions, corners)))
       polygons.push_back({i, mesh.triangles.size(), corners});
     AddFace(corners, faceIndex, mesh, indices);

@@ -76,7 +76,7 @@ std::vector<TriangleCorners> CutEars(const std::vector<Point3>& positions, std::
       }
       return true;
     };
-    // What crosses itself may have no ear: then any corner is cut, so that this ends.
+    // A polygon that crosses itself may have no ear. Then the next corner is cut, so that the loop ends.
     const bool isEar = misses >= count || (Area(points[a], points[b], points[c]) > 0 && isFree());
     if (!isEar) {
       ++at;
