@@ -6,9 +6,8 @@
 
 namespace lampyr {
 
-// What becomes of colours outside of the gamut. Limit: negative components become 0 and the others are scaled to the
-// same luminance, as a renderer needs them; negative components of the image count as 0. Keep: components stay
-// negative.
+// Treatment of colours outside of the gamut of Rec. 709. Keep: they have negative components, so the map is linear.
+// Limit: ClampToGamut, as rendering needs it; negative components of the image itself count as 0.
 enum class GamutHandling { Keep, Limit };
 
 // R, G and B in Rec. 709, without chromaticities. Pixels that are not finite stay as they are. Images without
