@@ -54,7 +54,7 @@ std::vector<Part> OpenParts(const std::vector<std::filesystem::path>& paths) {
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.First() < b.First(); });
   for (size_t i = 1; i < parts.size(); ++i) {
     const Part &before = parts[i - 1], &part = parts[i];
-    if (before.End() <= part.First()) continue;
+    if (before.End() <= part.First() && before.First() < part.First()) continue;
     throw Error(Quoted(before.path) + " and " + Quoted(part.path) + " hold the same samples: each part counts once");
   }
   return parts;
@@ -136,6 +136,8 @@ int RunMerge(const MergeOptions& options) {
     throw Error("the picture is not whole: " + missing + (missing.find(',') == std::string::npos ? " is" : " are") +
                 " missing; render it, or merge what there is with --partial");
   }
+  if (std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.Header().samples == 0; }))
+    throw Error("the parts hold no samples: there is nothing to merge");
   const OutputLock lock(options.output);
   PartHeader whole = parts.front().Header();
   whole.samples = 0;

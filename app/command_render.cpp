@@ -226,13 +226,13 @@ std::string DescribePartialPicture(const RenderOptions& options, const Film& fil
          " of the light paths of the first sample";
 }
 
-constexpr int kOpenEnd = 1 << 30;
+constexpr uint32_t kOpenEnd = 1u << 30;
 
 // Samples per pixel of the whole picture, over all parts.
 int SamplesWanted(const RenderOptions& options, const RenderSettings& settings) {
   // With a stop by time or error alone, the scene's own sample count is ignored.
   const bool isOpen = (options.seconds || options.targetError) && !options.overrides.samplesPerPixel;
-  return isOpen ? kOpenEnd : settings.samplesPerPixel;
+  return isOpen ? static_cast<int>(kOpenEnd) : settings.samplesPerPixel;
 }
 
 StopConditions MakeStopConditions(const RenderOptions& options, const Shard& shard) {
@@ -267,8 +267,10 @@ void WriteImage(const std::filesystem::path& path, const RenderOptions& options,
                 const Film& film, const Image& layers, const RenderOutcome& outcome) {
   PartHeader header = ofAll;
   header.samples = static_cast<uint32_t>(outcome.samplesPerPixel);
+  // Without a wanted number of samples, those until a stop by time or error are all.
+  const bool isOpen = header.shard.whole == kOpenEnd;
   const bool wasCut = outcome.interrupted || outcome.isPartial;
-  header.isFinished = !wasCut || header.samples == header.shard.end - header.shard.first;
+  header.isFinished = header.samples == header.shard.end - header.shard.first || (isOpen && !wasCut);
   if (!options.shard) {
     WriteSamples(path, header, film, layers);
     return;
@@ -285,9 +287,11 @@ void WriteImageOrKeepIt(const std::filesystem::path& path, const RenderOptions& 
   try {
     WriteImage(path, options, header, film, layers, outcome);
   } catch (const Error& error) {
+    std::error_code isMissing;  // TMPDIR may name a folder that is gone
+    std::filesystem::path folder = std::filesystem::temp_directory_path(isMissing);
+    if (isMissing) folder = "/tmp";
     const std::filesystem::path refuge =
-        std::filesystem::temp_directory_path() /
-        (path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string());
+        folder / (path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string());
     try {
       WriteImage(refuge, options, header, film, layers, outcome);
     } catch (const Error&) {
@@ -301,7 +305,7 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
                   const std::filesystem::path& checkpoint) {
   if (options.stats) CheckWritable(*options.stats, "--stats");
   if (options.checkpointSeconds) CheckWritable(checkpoint, "--checkpoint");
-  if (options.shard && GathersPhotons(settings) && SamplesWanted(options, settings) == kOpenEnd) {
+  if (options.shard && GathersPhotons(settings) && SamplesWanted(options, settings) == static_cast<int>(kOpenEnd)) {
     throw UsageError("--shard with " + settings.integrator +
                      " needs --spp: each part has the radii of its own samples, whose numbers must be known");
   }
@@ -551,12 +555,16 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       isPartial ? DescribePartialPicture(options_, film, settings_, integrator_->Paths()) : "";
   // The sums in a part's image are of whole samples.
   if (options_.shard) render.DropPartialPass();
-  // Each of the results is written even if another one fails.
+  // Each of the results is written even if another one fails. The first failure ends the command; the others are told.
   std::exception_ptr failure;
   const auto attempt = [&](const auto& write) {
     try {
       write();
-    } catch (const Error&) {
+    } catch (const Error& error) {
+      if (failure) std::fprintf(stderr, "%s\n", error.what());
+      if (!failure) failure = std::current_exception();
+    } catch (const std::exception& error) {  // of a library or of the system
+      if (failure) std::fprintf(stderr, "error: %s\n", error.what());
       if (!failure) failure = std::current_exception();
     }
   };
@@ -576,7 +584,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       report_.adaptive->mostSamples = std::max(report_.adaptive->mostSamples, film.Samples(i));
     }
   }
-  if (options_.stats) WriteText(*options_.stats, ToJson(report_));
+  if (options_.stats) attempt([&] { WriteText(*options_.stats, ToJson(report_)); });
   if (!options_.quiet) PrintSummary(report_, settings_.crop, path_, options_);
   if (failure) std::rethrow_exception(failure);
   return ExitCode(partialPicture);

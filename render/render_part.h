@@ -47,7 +47,7 @@ struct PartHeader {
   RenderIdentity identity;
   Shard shard;
   uint32_t samples = 0;     // per pixel in the file
-  bool isFinished = false;  // a stop condition was reached: number, time or error
+  bool isFinished = false;  // all samples of the shard are there; without a wanted number, those until the stop
   int width = 0, height = 0;
   PixelRect crop;
   std::vector<std::string> layers;

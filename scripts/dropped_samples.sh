@@ -15,8 +15,14 @@ trap 'rm -rf "$stats"' EXIT
 failed=0
 for scene in "$root"/scenes/*.pbrt; do
   for integrator in path light bdpt sppm vcm; do
-    "$lampyr" render "$scene" --integrator "$integrator" --spp "$samples" --resolution "$size" --quiet \
-      --output "$stats/out.exr" --stats "$stats/stats.json" 2>/dev/null
+    # With too many of them the render fails, after it has written its statistics.
+    rm -f "$stats/stats.json"
+    if ! "$lampyr" render "$scene" --integrator "$integrator" --spp "$samples" --resolution "$size" --quiet \
+      --output "$stats/out.exr" --stats "$stats/stats.json" 2>"$stats/errors"; then
+      echo "$(basename "$scene" .pbrt) $integrator: $(tail -n 1 "$stats/errors")"
+      failed=1
+    fi
+    [ -f "$stats/stats.json" ] || continue
     dropped=$(sed -n 's/.*"droppedSamples": \([0-9]*\).*/\1/p' "$stats/stats.json")
     rejected=$(sed -n 's/.*"rejectedRays": \([0-9]*\).*/\1/p' "$stats/stats.json")
     echo "$(basename "$scene" .pbrt) $integrator: $dropped dropped, $rejected rays rejected"

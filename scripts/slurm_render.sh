@@ -9,6 +9,9 @@
 # process, its time) is queued again and goes on where its last checkpoint ends; the others are not touched. What is wrong
 # with the scene or the options is not tried again.
 #
+# --threads, --checkpoint, --shard, --output and --resume are set by the script: cores by --cpus-per-task in
+# LAMPYR_SBATCH, checkpoints by LAMPYR_CHECKPOINT.
+#
 # LAMPYR          the binary; otherwise the one on the PATH, then the one built beside this script
 # LAMPYR_SBATCH   options for both jobs, e.g. "--partition=long --time=4:00:00 --cpus-per-task=16"
 # LAMPYR_TRIES    how often a part that fails is queued again (5)
@@ -68,6 +71,12 @@ shift 3
 [ -f "$scene" ] || fail "there is no scene \"$scene\""
 [[ $parts =~ ^[1-9][0-9]*$ ]] || fail "\"$parts\" is no number of parts"
 [[ $output == *.exr ]] || fail "\"$output\" must end in .exr"
+for option in "$@"; do
+  case $option in
+    --threads* | --checkpoint* | --shard* | --resume | --output* | -o*)
+      fail "$option is set by this script; cores: --cpus-per-task in LAMPYR_SBATCH; checkpoints: LAMPYR_CHECKPOINT" ;;
+  esac
+done
 command -v sbatch >/dev/null || fail "there is no sbatch here: Slurm is not installed (Debian: slurm-client)"
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 lampyr=${LAMPYR:-$(command -v lampyr || echo "$here/../build/release/lampyr")}

@@ -177,11 +177,20 @@ void WritePictures(const std::filesystem::path& folder, const ComparisonResults&
 
 void WriteResults(const CompareOptions& options, const std::filesystem::path& folder, const ComparisonPlan& plan,
                   const ComparisonResults& results) {
-  WriteText(folder / "results.csv", ToCsv(results));
-  WriteText(folder / "results.json", ToJson(results));
-  WritePictures(folder, results);
+  // What cannot be written takes nothing else with it: the first failure is thrown when all is told.
+  std::exception_ptr failure;
+  const auto attempt = [&failure](const auto& write) {
+    try {
+      write();
+    } catch (const Error&) {
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  attempt([&] { WriteText(folder / "results.json", ToJson(results)); });
+  attempt([&] { WriteText(folder / "results.csv", ToCsv(results)); });
   const std::string page = ToPage(results);
-  if (!page.empty()) WriteText(folder / "report.html", page);
+  if (!page.empty()) attempt([&] { WriteText(folder / "report.html", page); });
+  attempt([&] { WritePictures(folder, results); });
   if (!options.quiet) {
     std::printf("%s", ToText(results).c_str());
     if (results.repeats < plan.repeats) std::printf("interrupted: %d of %d repeats\n", results.repeats, plan.repeats);
@@ -202,6 +211,7 @@ void WriteResults(const CompareOptions& options, const std::filesystem::path& fo
                  results.reference.IsBlurred() ? " and blur" : "",
                  options.reference ? "use a reference of more samples" : "give it more time with --reference-time");
   }
+  if (failure) std::rethrow_exception(failure);
 }
 
 // The description of the run that is known before anything is measured.
@@ -236,7 +246,7 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
       options.output.empty() ? std::filesystem::path(options.scene.stem().string() + "-compare") : options.output;
   CheckMemory(settings, plan, !options.reference && IntegratorRefusal(loaded.built.scene, "vcm").empty());
   MakeFolder(folder, "--output");
-  CheckWritable(folder / "report.html", "--output");
+  for (const char* file : {"results.json", "results.csv", "report.html"}) CheckWritable(folder / file, "--output");
 
   ComparisonResults results = Describe(options, loaded);
   const ComparedScene scene(loaded.built, results.threads, FinishOnInterrupt(), options.ofProcessor);

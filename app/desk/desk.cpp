@@ -240,9 +240,12 @@ class Desk::Requests {
   }
 
   // Renders what the scene has become. `edited`: a statement that is told as it is now; null: none.
-  HttpReply Restarted(const Json& edited = nullptr) const {
+  HttpReply Restarted(const Json& edited = nullptr, const std::vector<std::string>& notes = {}) const {
     const double seconds = desk_.session_.Restart(desk_.scene_.Built());
-    return ReplyWith({{"seconds", seconds}, {"restart", desk_.session_.State().restart}, {"statement", edited}});
+    return ReplyWith({{"seconds", seconds},
+                      {"restart", desk_.session_.State().restart},
+                      {"statement", edited},
+                      {"notes", notes}});
   }
 
   HttpReply Edit() const {
@@ -270,8 +273,9 @@ class Desk::Requests {
   HttpReply Set() const {
     const std::lock_guard lock(desk_.editing_);
     const std::vector<Color> factors = Factors();
+    const std::vector<std::string> notes = GlowsThatStay(desk_.faders_, factors);
     desk_.scene_.Edit(EditsOf(desk_.scene_, desk_.faders_, factors));
-    HttpReply reply = Restarted();
+    HttpReply reply = Restarted(nullptr, notes);
     const std::shared_ptr<const DeskPicture> picture = desk_.session_.Picture();
     const std::lock_guard settingLock(desk_.setting_);
     if (picture) std::erase_if(desk_.set_, [&](const SetFactors& set) { return set.restart <= picture->restart; });

@@ -1,6 +1,8 @@
 #include "app/desk/keep_scene.h"
 
 #include <algorithm>
+#include <array>
+#include <memory>
 #include <optional>
 #include <system_error>
 
@@ -67,6 +69,21 @@ FreeCopies FindFreeCopies(const fs::path& scene, const std::vector<StatementChan
   throw Error("there are " + std::to_string(kMost) + " kept scenes already: remove some");
 }
 
+// The fader without a layer is that of all light.
+void Scale(const Color& factor, Image& image) {
+  const std::array<const char*, 3> names = {"R", "G", "B"};
+  for (size_t c = 0; c < 3; ++c) {
+    const int value = image.ChannelIndex(names[c]), variance = image.ChannelIndex(std::string("variance.") + names[c]);
+    const float by = c == 0 ? factor.r : c == 1 ? factor.g : factor.b;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        image.At(x, y, static_cast<size_t>(value)) *= by;
+        if (variance >= 0) image.At(x, y, static_cast<size_t>(variance)) *= by * by;
+      }
+    }
+  }
+}
+
 void WritePicture(const fs::path& path, const BuiltScene& scene, const Film& film, int samplesPerPixel,
                   const std::vector<Fader>& faders, const std::vector<Color>& factors) {
   Image image = film.Develop();
@@ -80,34 +97,45 @@ void WritePicture(const fs::path& path, const BuiltScene& scene, const Film& fil
   if (!list.empty()) image.metadata["lampyr.lightGroups"] = list;
   std::vector<LayerFactor> mixed;
   for (size_t i = 0; i < faders.size(); ++i) {
-    if (!faders[i].layer.empty() && factors[i] != Color(1.0f)) mixed.push_back({faders[i].layer, factors[i]});
+    if (factors[i] == Color(1.0f)) continue;
+    if (faders[i].layer.empty())
+      Scale(factors[i], image);
+    else
+      mixed.push_back({faders[i].layer, factors[i]});
   }
   WriteExr(path, mixed.empty() ? image : MixLayers(image, mixed), ExrPrecision::Float);
 }
 
 }  // namespace
 
+std::vector<std::string> GlowsThatStay(const std::vector<Fader>& faders, const std::vector<Color>& factors) {
+  std::vector<std::string> notes;
+  for (size_t i = 0; i < faders.size(); ++i) {
+    if (faders[i].hasGlow && factors[i] != Color(1.0f))
+      notes.push_back("the glow of media is in \"" + faders[i].label +
+                      "\", too: its fader is not set into the media of the scene");
+  }
+  return notes;
+}
+
 KeptFiles Keep(const EditableScene& scene, DeskSession& session, const std::vector<Fader>& faders,
                const std::vector<Color>& factors) {
   const FreeCopies copies =
       FindFreeCopies(scene.Description().file, AllChanges(scene, EditsOf(scene, faders, factors)));
   KeptFiles kept;
+  kept.notes = GlowsThatStay(faders, factors);
+  // Nothing is left behind if one of the files cannot be written: all are open before the first is committed.
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  for (const CopiedFile& copy : copies.files) {
+    AtomicFile& file = *files.emplace_back(std::make_unique<AtomicFile>(copy.path));
+    file.Write(copy.text.data(), copy.text.size());
+    kept.scenes.push_back(fs::absolute(copy.path));
+  }
   session.WithFilm([&](const BuiltScene& built, const Film& film, int samplesPerPixel) {
     WritePicture(copies.picture, built, film, samplesPerPixel, faders, factors);
   });
-  for (const CopiedFile& copy : copies.files) {
-    AtomicFile file(copy.path);
-    file.Write(copy.text.data(), copy.text.size());
-    file.Commit();
-    kept.scenes.push_back(fs::absolute(copy.path));
-  }
+  for (const auto& file : files) file->Commit();
   kept.picture = fs::absolute(copies.picture);
-  for (size_t i = 0; i < faders.size(); ++i) {
-    if (faders[i].hasGlow && factors[i] != Color(1.0f))
-      kept.notes.push_back(
-          "the glow of media is in \"" + faders[i].label +
-          "\", too: its fader is in the picture, and in the lights of the scene, but not in the media");
-  }
   return kept;
 }
 

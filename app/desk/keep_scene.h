@@ -16,6 +16,9 @@ struct KeptFiles {
   std::vector<std::string> notes;  // what could not be kept
 };
 
+// Notes on faders of glowing media that are not 1: the media of the scene stay as they are. `factors`: by fader.
+std::vector<std::string> GlowsThatStay(const std::vector<Fader>& faders, const std::vector<Color>& factors);
+
 // Writes the scene as SCENE.desk.pbrt beside the original, because names of files in it are relative to that; files
 // that it includes and in which something is edited, beside those. The picture, mixed by the faders, goes to the
 // working folder as SCENE.desk.exr. Where such a file exists, the names are SCENE.desk-2.pbrt, …: nothing is

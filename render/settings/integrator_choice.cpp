@@ -51,7 +51,11 @@ double SplatCount(const RenderSettings& settings) {
 
 std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const RenderSettings& settings) {
   const std::string refusal = IntegratorRefusal(scene, settings.integrator);
-  if (!refusal.empty()) throw UsageError("integrator " + settings.integrator + ": " + refusal);
+  if (!refusal.empty()) {
+    const std::string text = "integrator " + settings.integrator + ": " + refusal;
+    if (settings.integratorWhere.file) throw Error(settings.integratorWhere, text);
+    throw UsageError(text);
+  }
   return IntegratorOf(settings.integrator)
       .create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values,
                settings.counts.get(), SplatCount(settings)});
@@ -72,6 +76,10 @@ RenderSettings VariantOf(const RenderSettings& settings, const std::string& name
   if (name == kAuto + std::string(":") + kAdaptive) {
     variant.adaptive.emplace();
     return variant;
+  }
+  if (IsAuto(name)) {
+    throw UsageError("--integrators: \"" + name + "\": auto has the variants " + kAuto + " and " + kAuto + ":" +
+                     kAdaptive + ", with or without " + kDenoised + "; set others with an option (--max-depth)");
   }
   size_t colon = name.find(':');
   variant.integrator = name.substr(0, colon);

@@ -368,9 +368,11 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     settings.integrator = "path";
   }
   if (settings.integrator != "auto") settings.namedIntegrator = settings.integrator;
+  settings.integratorWhere = scene.integrator.where;
   if (overrides.integrator) {
     CheckIntegratorName(*overrides.integrator);
     settings.integrator = *overrides.integrator;
+    settings.integratorWhere = {};
   }
   ReadSettings(parameters, overrides, settings.values);
   // Parameters of an integrator that is replaced by "path" are not checked.
@@ -460,6 +462,13 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
                   "there is no mapping \"" + mapping + "\"" + DidYouMean(mapping, {"equalarea", "equirectangular"}));
     }
     known.push_back("mapping");
+    for (const char* name : {"lensradius", "focaldistance", "screenwindow", "frameaspectratio"}) {
+      if (parameters.Find(name))
+        diagnostics.Warn(parameters.WhereOf(name), "\"" + std::string(name) + "\" has no effect on a spherical camera");
+    }
+    if (!(frame.filmMargin.x < static_cast<float>(frame.width) && frame.filmMargin.y < static_cast<float>(frame.height)))
+      throw Error(description.pixelFilter.where,
+                  "the radius of the filter of a spherical camera must be less than its image, which goes all around");
     camera = MakeSphericalCamera(
         frame, mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
   } else {

@@ -44,6 +44,7 @@ enum class FirstHitSpace { Camera, World };
 
 struct RenderSettings {
   std::string integrator = "path";
+  FileLocation integratorWhere;                   // of its statement; without a file if the command line names it
   std::shared_ptr<const TechniqueCounts> counts;  // of the integrator, if "auto" has chosen it
   std::string namedIntegrator;             // named by the scene, as lampyr calls it; "" if it names none or "auto"
   Settings values = IntegratorSettings();  // of all integrators

@@ -565,11 +565,13 @@ ErrorParts Film::PartsOfError(double largestSample) const {
   const double n = static_cast<double>(pixels_.size());
   const double largest = samples > 0 ? std::pow(largestSample * n / samples, 2) : 0;
   const double bound = UpperBound(varianceSum, fourthSum, largest), biasSquare = MeanBiasSquare();
-  if (bound == 0 && biasSquare == 0) return {};  // black or constant
   const double meanLuminance = luminanceSum / n;
-  // An image that is black after this many samples per pixel counts as converged.
+  // An image that is black after this many samples per pixel counts as converged. Before, light paths may only have
+  // missed what the camera sees: pixels have no variance until the first splat.
   constexpr double kLong = 4096;
-  if (varianceSum == 0 && meanLuminance == 0 && samples / n >= kLong) return {};
+  const bool isBlack = varianceSum == 0 && meanLuminance == 0;
+  if (isBlack && samples / n >= kLong) return {};
+  if (bound == 0 && biasSquare == 0 && !(isBlack && lightPaths_ > 0)) return {};  // black or constant
   if (!(meanLuminance > 0)) return {std::numeric_limits<double>::infinity(), 0};
   return {1.959963984540054 * std::sqrt(bound / n) / meanLuminance, std::sqrt(biasSquare) / meanLuminance};
 }

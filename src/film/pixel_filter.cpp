@@ -39,8 +39,8 @@ double AxisValue(const PixelFilterSettings& settings, double radius, double x) {
       return radius - std::abs(x);
     case Kind::Gaussian: {
       const double scale = -0.5 / (static_cast<double>(settings.sigma) * static_cast<double>(settings.sigma));
-      // exp(sx²) - exp(sr²), without cancellation for large σ.
-      return std::exp(scale * radius * radius) * std::expm1(scale * (x * x - radius * radius));
+      // exp(sx²) - exp(sr²), without cancellation for large σ, and without overflow for small σ.
+      return -std::exp(scale * x * x) * std::expm1(scale * (radius * radius - x * x));
     }
     case Kind::Mitchell:
       return Mitchell(2 * x / radius, static_cast<double>(settings.b), static_cast<double>(settings.c));
@@ -67,6 +67,9 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
     return axis;
   }
   const double step = 2 * r / kSteps;
+  if (settings.kind == Kind::Gaussian && static_cast<double>(settings.sigma) < step)
+    throw Error("the pixel filter's \"sigma\" must be at least " + std::to_string(step) +
+                ", the radius over " + std::to_string(kSteps / 2));
   std::vector<double> sums(kSteps + 1, 0.0), absoluteSums(kSteps + 1, 0.0);  // of f and |f| up to each step
   double squares = 0;
   for (size_t i = 0; i < kSteps; ++i) {

@@ -49,6 +49,7 @@ std::shared_ptr<const Material> MakeDiffuseTransmission(const MaterialInput& inp
       input.textures.GetColor(input.parameters, "reflectance", Color(0.25f), SpectrumRole::Albedo),
       input.textures.GetColor(input.parameters, "transmittance", Color(0.25f), SpectrumRole::Albedo),
       static_cast<float>(input.parameters.GetFloat("scale", 1))};
+  if (recipe.scale < 0) throw Error(input.parameters.WhereOf("scale"), "\"scale\" must be 0 or more");
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
   CheckMaterialParameters(input, {"reflectance", "transmittance", "scale"});
   const auto most = [&](const ColorParameter& c) {

@@ -414,13 +414,17 @@ function report(box, ...lines) {
 
 $('set').onclick = async () => {
   try {
-    await post('set', {factors: factors()});
+    const {notes} = await (await post('set', {factors: factors()})).json();
     neutralize();
     await loadLights();
     for (const fader of desk.faders) {
       if (!fader.lights.hidden) showLights(fader.lights, fader.statements);
     }
-    $('kept').hidden = true;
+    if (notes.length > 0) {
+      report($('kept'), ...notes);
+    } else {
+      $('kept').hidden = true;
+    }
   } catch (error) {
     report($('kept'), error.message);
   }
