@@ -90,7 +90,10 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
   }
   double sumBefore = 0;
   for (size_t part = 0, i = 0; part <= kParts; ++part) {
-    const double share = absoluteSum * static_cast<double>(part) / kParts;
+    // The outermost parts end where the filter does but for kTail: a narrow Gaussian has little mass in most of its
+    // radius, over which the part would be spread.
+    constexpr double kTail = 1e-7;
+    const double share = absoluteSum * std::clamp(static_cast<double>(part) / kParts, kTail, 1 - kTail);
     while (i + 1 < kSteps && absoluteSums[i + 1] < share) ++i;
     const double within = absoluteSums[i + 1] - absoluteSums[i];
     const double t = within > 0 ? std::clamp((share - absoluteSums[i]) / within, 0.0, 1.0) : 0.0;

@@ -282,6 +282,28 @@ TEST_F(Desk, FadersAreSetIntoTheLights) {
   EXPECT_NEAR(sumMixed, sumRendered, 0.1 * sumRendered);
 }
 
+// Where nothing but a medium shines, the only fader is that of all light.
+TEST_F(Desk, AGlowAloneIsMixedToo) {
+  WriteBytes(folder_ / "glow.pbrt", R"(LookAt 0 0 3  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 15
+WorldBegin
+MakeNamedMedium "glow" "string type" "homogeneous" "rgb sigma_a" [1 1 1] "rgb sigma_s" [0 0 0] "rgb Le" [1 1 1]
+MediumInterface "glow" ""
+Material "interface"
+Shape "sphere"
+)");
+  const DeskProcess desk(folder_.Path(), "glow.pbrt --quiet --spp 4");
+  const Image plain = ReadImage(Kept(desk, {{1, 1, 1}}).at("picture").get<std::string>());
+  const Json kept = Kept(desk, {{4, 2, 1}});
+  EXPECT_EQ(kept.at("notes").size(), 1u);
+  const Image mixed = ReadImage(kept.at("picture").get<std::string>());
+  const Color before = plain.RgbAt(12, 7), after = mixed.RgbAt(12, 7);
+  EXPECT_GT(before.r, 0);
+  EXPECT_EQ(after, before * Color(4, 2, 1));
+  EXPECT_EQ(desk.PostJson("set", {{"factors", {{4, 4, 4}}}}).at("notes").size(), 1u);
+}
+
 TEST_F(Desk, MistakesAreToldAndChangeNothing) {
   const DeskProcess desk(folder_.Path(), "scene.pbrt --quiet --spp 4");
   desk.WaitUntilDone();

@@ -54,12 +54,15 @@ TEST_F(Faults, AFullFileSystem) {
   const std::string after = Bytes("small/out.exr");
   const Outcome third = Run("render scene.pbrt -o small/out.exr --spp 3000 --checkpoint 0.1s");
   const bool isClean = !Exists("small/out.checkpoint");
+  const Outcome homeless =
+      RunLampyr(folder_.Path(), "render scene.pbrt --quiet -o small/out.exr --spp 65", "export TMPDIR=/nonexistent;");
   umount(small.c_str());
   EXPECT_EQ(first.exitCode, 0) << first.output;
   EXPECT_EQ(second.exitCode, 1) << second.output;
   EXPECT_NE(second.output.find("No space left on device"), std::string::npos) << second.output;
   EXPECT_EQ(before, after);
   EXPECT_EQ(KeptPicture(second.output).metadata["lampyr.samplesPerPixel"], "64") << second.output;
+  EXPECT_EQ(KeptPicture(homeless.output).metadata["lampyr.samplesPerPixel"], "65") << homeless.output;
   EXPECT_NE(third.output.find("warning: no checkpoint was written, the render goes on"), std::string::npos)
       << third.output;
   EXPECT_EQ(third.exitCode, 1) << third.output;

@@ -179,6 +179,16 @@ TEST_F(Merge, PartsOfATimeAreWholeWhenItIsOver) {
   Do("render scene.pbrt --quiet --integrator vcm --no-merge --time 0.1s --shard 2/2 -o p3.exr");
 }
 
+// A number of samples that is not reached in the time is missing.
+TEST_F(Merge, PartsWithFewerSamplesThanWantedAreNotWhole) {
+  for (const char* part : {"1", "2"})
+    Do(std::string("render scene.pbrt --quiet --spp 100000000 --time 0.2s --shard ") + part + "/2 -o p" + part +
+       ".exr");
+  ExpectRefused("merge -o merged.exr p1.exr p2.exr", 1, "of 50000000 samples are there)");
+  Do("merge --partial -o merged.exr p1.exr p2.exr");
+  ExpectRefused("merge --partial -o merged.exr p1.exr p1.exr", 1, "hold the same samples");
+}
+
 TEST_F(Merge, PartsCanBeGoneOnWith) {
   Do("render scene.pbrt --quiet -o whole.exr --spp 40");
   for (const char* part : {"1", "2"}) {

@@ -130,6 +130,22 @@ TEST(PixelFilter, ShapesAreThoseOfPbrt) {
               std::sin(1.5 * pi) / (1.5 * pi) * std::sin(0.5 * pi) / (0.5 * pi), 1e-6);
 }
 
+// exp(-r²/2σ²) is 0 there.
+TEST(PixelFilter, AGaussianMayBeFarNarrowerThanItsRadius) {
+  for (const float sigma : {0.079f, 0.03f, 0.01f}) {
+    PixelFilterSettings settings = Settings(Kind::Gaussian, 3, 3);
+    settings.sigma = sigma;
+    const PixelFilter filter(settings);
+    const double peak = 1 / (2 * 3.14159265358979 * std::pow(static_cast<double>(sigma), 2));
+    EXPECT_NEAR(static_cast<double>(filter.Evaluate({0, 0})), peak, 1e-3 * peak);
+    double squares = 0;
+    constexpr int n = 4096;
+    for (int i = 0; i < n; ++i)
+      squares += std::pow(static_cast<double>(filter.Sample({(static_cast<float>(i) + 0.5f) / n, 0.5f}).offset.x), 2);
+    EXPECT_NEAR(std::sqrt(squares / n), static_cast<double>(sigma), 0.01 * static_cast<double>(sigma));
+  }
+}
+
 TEST(PixelFilter, SettingsThatMakeNoFilterAreErrors) {
   EXPECT_THROW(PixelFilter(Settings(Kind::Box, 0, 1)), Error);
   EXPECT_THROW(PixelFilter(Settings(Kind::Gaussian, 1, -1)), Error);

@@ -106,6 +106,19 @@ TEST(Splats, OnePathIsOneSampleOfAPixel) {
   EXPECT_FLOAT_EQ(image.At(0, 0, 3), 2.5f);
 }
 
+// Without a splat there is no variance yet, although pixels that cameras alone see would be known to be black.
+TEST(Splats, ABlackPictureHasNoErrorUntilLightPathsHadTheirChance) {
+  const PixelFilter box = Filter(Kind::Box, 0.5f);
+  Film film(1, 1, {0, 0, 1, 1});
+  std::vector<SplatList> lists(1, film.MakeSplatList(box, 1));
+  for (int i = 0; i < 4; ++i) lists[0].StartPath();
+  film.AddSplats(box, lists, 1);
+  EXPECT_TRUE(std::isinf(film.RelativeError()));
+  Film seen(1, 1, {0, 0, 1, 1});
+  for (int i = 0; i < 4; ++i) seen.Pixel(0, 0).Add(Color(), 1);
+  EXPECT_EQ(seen.RelativeError(), 0);
+}
+
 TEST(Splats, RelativeErrorIsThatOfTheSum) {
   const PixelFilter box = Filter(Kind::Box, 0.5f);
   Film film(1, 1, {0, 0, 1, 1});
