@@ -17,12 +17,12 @@
 
 namespace lampyr {
 
-// True if a number of this size may be a sum of squares; those of the others overflow, or lose what they are.
+// True if a sum of squares of this size is accurate: squares of larger or smaller components overflow or underflow.
 inline bool IsOfGoodSize(float square) {
   return square > 1e-30f && square < 1e30f;
 }
 
-// The direction of what a map makes of a direction. Where lengths would overflow, or be lost, it is computed in double.
+// The unit direction of a mapped direction, computed in double where its length would overflow or underflow.
 inline Vector3 MappedDirection(const Affine& map, const Vector3& direction) {
   const Vector3 mapped = map.Vector(direction);
   if (IsOfGoodSize(LengthSquared(mapped))) [[likely]]

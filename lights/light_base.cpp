@@ -46,7 +46,7 @@ std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> param
 
 namespace {
 
-// The parameters that are colours of light in one type or another; no type has two of the first two.
+// The parameters that are colours of light in one type or another; no type has both "L" and "I".
 std::vector<LightSpectrum> SpectraOf(const ParameterList& parameters) {
   std::vector<LightSpectrum> spectra;
   for (const char* name : {"L", "I", "color"}) {

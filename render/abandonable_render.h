@@ -1,6 +1,6 @@
-// Passes of a render that is thrown away when it is stopped: nothing is kept of it that would let it go on. A stop then
-// takes no longer than the rays that are under way, whatever the size of the film (progressive_render.h keeps a copy of
-// the film from before each pass).
+// Passes of a render that is discarded when it is stopped: no state is kept from which it could continue. A stop then
+// takes no longer than the rays under way, whatever the size of the film (progressive_render.h keeps a copy of the film
+// from before each pass).
 //
 // The picture after n samples per pixel is that of ProgressiveRender, byte by byte.
 #pragma once

@@ -22,7 +22,7 @@ constexpr double kTiny = std::numeric_limits<double>::min();
 // Rates. The lower limit is for pixels whose noise has not shown yet, the upper for fireflies.
 constexpr double kLeastRate = 0.5, kMostRate = 32;
 
-// Variances of a pixel, relative to its squared luminance, that its number of samples follows from.
+// Variances of a pixel, relative to its squared luminance, that determine its number of samples.
 struct PixelNeed {
   double ofSample = 0;  // variance of a sample
   double before = 0;    // variance of the picture per `ofSample`, as far as it comes from earlier stages
@@ -73,9 +73,9 @@ struct SampleSums {
   }
 };
 
-// Limits the variance of a pixel by that of its neighbourhood, as the mean of standard deviations tells it. A few
-// bright samples in a neighbourhood say where they happened to fall and not where the next will fall; as a mean of
-// variances, a single one of them would give its samples to hundreds of pixels.
+// Limits the variance of a pixel by that of its neighbourhood, estimated from the mean of standard deviations. A few
+// bright samples do not predict where the next one will fall; with a mean of variances, a single one of them would
+// attract samples to hundreds of pixels.
 void LimitOutliers(SampleSums& sums) {
   constexpr double kMost = 4;
   constexpr int kBlurs = 3;
@@ -206,8 +206,8 @@ std::vector<double> WantedSamples(const Film& film, const SampleStage& stage, co
   const double least = kLeastRate * passes, most = kMostRate * passes, all = passes * pixels;
   const auto rank = static_cast<size_t>(std::clamp(settings.share * pixels, 1.0, pixels)) - 1;
   std::vector<double> samples(needs.size()), sorted;
-  // The lowest target that the samples of the stage suffice for. Beyond the share no pixel is given more than those in
-  // it.
+  // The lowest target that the samples of the stage suffice for. Pixels outside of the share get no more samples than
+  // the noisiest pixel in it.
   const auto sumFor = [&](double target) {
     CheckStop();
     for (size_t i = 0; i < needs.size(); ++i) samples[i] = SamplesFor(needs[i], target, stageShare, least, most);

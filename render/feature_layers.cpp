@@ -32,12 +32,12 @@ struct Sums {
     }
     ++count;
   }
-  // Of the mean.
+  // Variance of the mean of feature k.
   double Variance(size_t k) const {
     const double mean = sum[k] / count;
     return std::max(squares[k] / count - mean * mean, 0.0) / std::max(count - 1, 1);
   }
-  // Of albedo and normal, whose range is known.
+  // The largest variance of albedo and normal, whose range is known.
   double LargestVariance() const {
     double largest = 0;
     for (size_t k = 0; k + 1 < kFeatures; ++k) largest = std::max(largest, Variance(k));
@@ -66,7 +66,7 @@ class FeatureTracer {
   }
 
  private:
-  // Of one ray; 0 where it meets nothing.
+  // The features of one ray; 0 if it hits nothing.
   Features Trace(Ray ray, Sampler& sampler) const {
     Color throughput(1.0f);
     float distance = 0;

@@ -23,7 +23,7 @@ const std::vector<std::string>& FeatureChannels();
 inline constexpr const char* kFeaturesMetadata = "lampyr.features";
 
 // An image of FeatureChannels() over the crop: means over the rays of 16 samples of each pixel, up to 128 at edges, and
-// the variances of these means. Without channels if `interrupted` was set, which is looked at from row to row.
+// the variances of these means. Without channels if `interrupted` was set, which is checked at each row.
 Image FeatureLayers(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted);
 
 }  // namespace lampyr

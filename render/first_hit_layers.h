@@ -1,6 +1,6 @@
-// The layers of what the camera sees first: position, normals, texture coordinates, albedo, and who it is; those of
-// Film "gbuffer", and the pixel layers that were asked for (settings/output_layers.h). They do not depend on the
-// integrator, nor on which samples of the picture are rendered, so that all parts of a picture have the same.
+// The layers of what the camera sees first: position, normals, texture coordinates, albedo, object and material; those
+// of Film "gbuffer", and the requested pixel layers (settings/output_layers.h). They do not depend on the integrator,
+// nor on which samples of the picture are rendered, so that all parts of a picture have the same.
 #pragma once
 
 #include <atomic>
@@ -33,7 +33,7 @@ std::map<std::string, std::string> FirstHitMetadata(const BuiltScene& built);
 
 // An image of FirstHitChannels() over the crop: means over the rays of the samples of each pixel, 16 of them at most,
 // that hit something, by the magnitude of the pixel filter; 0 where none does. Perfectly smooth surfaces are followed
-// if the settings ask for it. Without channels if `interrupted` was set, which is looked at from row to row.
+// if the settings ask for it. Without channels if `interrupted` was set, which is checked at each row.
 Image FirstHitLayers(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted);
 
 }  // namespace lampyr

@@ -15,8 +15,8 @@
 
 namespace lampyr {
 
-// Of path guiding: PathLearning::Gain, and the regions of the guide in use; 0: walks are not guided. Of the selection
-// of lights: SelectionTest::Gain, and whether what was learned is used.
+// Statistics of path guiding: PathLearning::Gain, and the regions of the guide in use; 0: walks are not guided.
+// Statistics of learned light selection: SelectionTest::Gain, and true if the selection is used.
 struct GuidingStatistics {
   double gain = 1;
   size_t regions = 0;
@@ -42,15 +42,15 @@ class PassSequence {
   PassState State() { return {*film_, &learning_, &selection_, &guiding_, &paths_}; }
   // Counts since the last call.
   RenderCounts TakeCounts();
-  // Of integrators that gather photons.
+  // Photon statistics; nullopt if the integrator gathers no photons.
   std::optional<PhotonStatistics> Photons() const;
   GuidingStatistics Guiding() const;
   // Fraction of `dropped` of all samples, or of the photons if that is larger, that was invalid.
   double DroppedFraction(uint64_t dropped, int samplesPerPixel) const;
 
-  // After a pass was cut short and its state restored: what else it had changed is made anew.
+  // To be called after a pass was cut short and its state restored: makes anew what else the pass had changed.
   void StartAnew();
-  // Goes on with another film; what a given-up pass still uses is left to it.
+  // Continues with another film; objects that a given-up pass still uses are left to that pass.
   void LeaveToGivenUpPass(Film& film);
   // Saves, or restores, all state but the film.
   void Save(ByteWriter& bytes) const;

@@ -1,4 +1,5 @@
-// Merging with photon beams: what a flight of a light path leaves, and the vertex that a camera ray makes of it.
+// Merging with photon beams: the beam that a flight of a light path leaves, and the light path's vertex where a camera
+// ray passes the beam.
 #pragma once
 
 #include "integrators/bidirectional/subpath_weights.h"
@@ -11,17 +12,16 @@ namespace lampyr {
 // passes media whose photons are beams, if its share is above `below`.
 void AddFlight(const SampleContext& context, const VolumeRadius& radius, double below, const LightPath& path,
                const PathState& state, const Flight& flight, const EmittedPhoton& emission);
-// Decides which flights of the light path that `sampler` is at are kept: those whose share is above the number. 1:
-// none.
+// A random threshold for the current light path of `sampler`: flights with a share above it are kept. 1: none.
 double FlightsBelow(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions);
 
-// True if the flight to the vertex is a photon itself, so that the vertex is none.
+// True if the flight to the vertex is stored as a beam, so that the vertex stores no photon.
 inline bool IsOnBeam(const Vertex& vertex, const VolumeRadius& radius) {
   return vertex.IsInMedium() && radius.UsesBeams(vertex.insideMedium);
 }
 
-// The vertex of a light path in a medium at which a camera ray passes its flight: as if it had collided there, but for
-// the density of that.
+// The vertex of a light path in a medium at which a camera ray passes its flight: the same as after a collision there,
+// except for the density.
 struct BeamVertex {
   PathVertex vertex;  // of the light path: factors, pdfForward, weight
   ArrivingEdge edge;  // at it, from the light's side

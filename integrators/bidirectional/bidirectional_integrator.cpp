@@ -59,7 +59,8 @@ namespace {
 
 // Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
 constexpr double kRadiusInPixels = 1;
-// Its bounds, in radii of the scene: less than the rounding of positions finds nothing, more finds everything.
+// Bounds of the merging radius, in radii of the scene: below the rounding of positions it finds no photon, beyond the
+// scene all of them.
 constexpr double kLeastRadius = 1e-7, kMostRadius = 2;
 
 }  // namespace
@@ -75,7 +76,7 @@ float BidirectionalSample::MergeRadiusAt(double footprint) const {
 Merging BidirectionalSample::MergingAt(double distance, double footprint, const Point2& film) const {
   const auto probability = static_cast<double>(settings.counts.merging.At(film));
   if (!(probability > 0)) return {};
-  // Parallel rays have no angle: what a camera with a field of view of 53 degrees has where the image is as wide.
+  // Parallel rays have no angle: they take the distance at which a field of view of 53 degrees is as wide as the image.
   if (context.scene.camera->ConnectsByDirection()) distance = std::sqrt(footprint * settings.filmPixels);
   return Merging::At(static_cast<double>(MergeRadiusAt(footprint)), distance, context.gather->lightPaths, lightPaths,
                      settings.filmPixels, probability, static_cast<double>(context.gather->radiusScale));
@@ -175,8 +176,8 @@ class CameraSide final : public PathVisitor {
     return true;
   }
 
-  // Photons in media along the ray. Each makes a vertex of the camera subpath for itself, as if the ray had collided
-  // there, but for the density of that.
+  // Photons in media along the ray. Each gets a vertex of the camera subpath of its own, the same as after a collision
+  // there except for the density.
   void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
     if (!sample_.context.gather || !sample_.isMerged || sample_.context.IsCounted(state.isDispersed)) return;
     if (static_cast<int>(path.Count()) >= sample_.settings.maxDepth) return;
@@ -342,7 +343,7 @@ class CameraSide final : public PathVisitor {
     firstFootprint_ = sample_.FootprintAt(cosTheta, seen);
     firstDistance_ = distance;
   }
-  // At a vertex before which there are deltas only, taken as flat.
+  // Called at a vertex before which there are only deltas, which are taken as flat.
   void SetMerging(double distance) {
     double footprint = firstFootprint_;
     const bool isParallel = sample_.context.scene.camera->ConnectsByDirection();

@@ -22,8 +22,8 @@ namespace lampyr {
 
 struct BidirectionalSettings {
   int maxDepth = 5;       // scattering events
-  double filmPixels = 1;  // pixels of the full image: light paths per sample of all pixels
-  double splatCount = 1;  // samples of a pixel that a splat is worth
+  double filmPixels = 1;  // pixels of the full image, and light paths per sample of all pixels
+  double splatCount = 1;  // sample count of splats in weights (SplatCount)
   bool merges = false;    // vertex merging
   // Vertex connection. Without it light is found by merging alone (bidirectional photon mapping), except for lights
   // that trace no light paths, and for lights that the camera sees directly or over deltas only, which cannot be

@@ -72,7 +72,8 @@ class NextEventTechnique final : public NextEventVisitor {
   }
 
  private:
-  // Without connections: of a light that no camera path hits, where no photon can be merged on the way, as on hair.
+  // True if no other technique finds the light when subpaths are not connected: camera paths cannot hit it, and no
+  // photon can be merged on the way, as on hair.
   bool IsFoundHereAlone(uint32_t light) const {
     return !sample_.couldMerge && !vertex_.CanMerge() && !sample_.Lighting().CanBeHit(light);
   }

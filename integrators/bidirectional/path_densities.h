@@ -2,9 +2,8 @@
 //
 // A path with the surface vertices 1 … n, from the light on, may be merged at any of them, whichever technique made it:
 // with a photon of any of N light paths within the radius r. The density is p_(i+1) · B_i · N π r² (walk/
-// partial_weight.h). But photons that are gathered together are worth N independent ones only as far as their paths
-// differ: where a narrow beginning leads all of them to the same place, they are worth one. So the density is
-// multiplied by ([Grittmann21 §5])
+// partial_weight.h). But photons that are gathered together are correlated: where a narrow beginning leads all of their
+// paths to the same place, N photons have the variance of one. So the density is multiplied by ([Grittmann21 §5])
 //   c_i = max(P_C / (P_C + P_L - P_C P_L), 1/N),   P_L(i) = Π_(k≤i) f_k,   P_C(i) = Π_(k≥i) b_k
 // with f_k the probability that another light path has its vertex k within ρ of this path's, and b_k the same for
 // another camera path of the pixel; of a vertex in a medium, within the ball of the radius ρ. c is 1 at the vertex that
@@ -21,8 +20,8 @@
 
 namespace lampyr {
 
-// Merging on one path. All techniques of the path share it: it follows from the first vertex from the camera that
-// scatters by another event than a delta.
+// Parameters of merging on one path, shared by all of its techniques. They follow from the first vertex from the camera
+// whose event is no delta.
 struct Merging {
   // N π r² times the probability of merging, for each of the light paths per sample; 0: no merging.
   double perDensity = 0;
@@ -30,8 +29,8 @@ struct Merging {
   double area = 0;                 // π ρ²
   double radius = 0;               // ρ, scene units
   double lightPaths = 1;           // N
-  double lightPathsPerSample = 1;  // LightEnd::emission is so many times that of one light path
-  double filmPixels = 1;  // the density of the first hit by a ray through its pixel is so many times that by any
+  double lightPathsPerSample = 1;  // LightEnd::emission is this many times that of one light path
+  double filmPixels = 1;  // density of the first hit by a ray through its own pixel, over that by a ray through any
 
   explicit operator bool() const { return perDensity > 0; }
   // `radius`: r. `distance`: path length from the camera; ρ is what a degree spans there.

@@ -23,7 +23,8 @@ struct LeftVertex {
 void SetWeights(const LeftVertex& previous, const EdgeFactors& edge, SolidAnglePerArea fromPrevious,
                 SolidAnglePerArea toPrevious, bool connects, PathVertex& vertex);
 
-// The densities of the last vertex of a subpath, and what is known of those before it once that one is there.
+// Sets the densities of the last vertex of a subpath, and those of the vertices before it that follow from the last
+// one.
 // `radius`: of photons in media. `isFromLight`: the camera's side is that of later vertices.
 void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLight,
                   std::vector<SubpathDensities>& densities);

@@ -38,8 +38,8 @@ struct BidirectionalSample {
   PathDensities& whole;  // of the path that is weighted
   std::vector<SubpathDensities>&lightDensities, &cameraDensities;
   Merging merging{};  // of what the camera subpath sees
-  // TechniqueCounts where the camera path starts: light paths for each camera path; connections for each light path,
-  // squared; whether this camera path is connected, and merged where it can be.
+  // TechniqueCounts at the film point of the camera path: light paths for each camera path; connections for each light
+  // path, squared; true if this camera path is connected, and if it is merged where it can be.
   double lightPaths = 1, connectionCount = 1;
   double connectionsPerSample = 1;  // of a camera vertex to the same vertex of a light path, on average
   bool isConnected = true, isMerged = true;
@@ -120,7 +120,8 @@ struct BidirectionalSample {
   // light subpath.
   void SetCamera(ConnectedPath& path) const;
   void SetLight(ConnectedPath& path, size_t count) const;
-  // The observer, if any, receives the path. A path is large: techniques that make many do without where none observes.
+  // Reports the path to the observer, if any. A ConnectedPath is large, so that techniques that make many of them set
+  // one only for an observer.
   void Report(ConnectedPath& path) const;
 };
 
@@ -146,8 +147,8 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount);
 // started.
 void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon);
 void SplatVertex(const BidirectionalSample& sample, const FlightStartPoint& start);
-// Samples a point of the flight along the ray of `state` and connects it to the lens. `path`: of `sample`; as
-// before at the end.
+// Samples a point of the flight along the ray of `state` and connects it to the lens. `path`: the light subpath of
+// `sample`, unchanged on return.
 void SplatFlight(BidirectionalSample& sample, const FlightStartPoint& start, const PathState& state,
                  const Flight& flight, const EmittedPhoton& photon, Sampler& sampler, LightPath& path);
 
@@ -179,9 +180,9 @@ bool SetBeamOf(const BidirectionalSample& sample, const BeamCrossing& crossing, 
 // dimensions, beam–beam in one; the kernels are constant).
 Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge);
 
-// Vertex merging: photons near the camera subpath's last vertex ([Georgiev12 §3]). They lie anywhere in memory, as do
-// the densities of their paths, and reading them takes longer than weighting them. So they are looked up first, fetched
-// into the cache while the other techniques of the vertex are at work, and merged last.
+// Vertex merging: photons near the camera subpath's last vertex ([Georgiev12 §3]). Photons and the densities of their
+// paths are scattered in memory, and reading them takes longer than weighting them. So photons are looked up first,
+// fetched into the cache while the other techniques of the vertex are at work, and merged last.
 //
 // True if photons can be merged with the last vertex.
 bool CanMergePhotons(const BidirectionalSample& sample);

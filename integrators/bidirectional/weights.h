@@ -3,8 +3,8 @@
 // integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
 // `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities). `connectionCount`: connections per light
-// path in the pixel, squared. `splatCount`: samples of a pixel that a splat is worth. `nextCount`: NextEventCount of
-// the path.
+// path in the pixel, squared. `splatCount`: sample count of splats (SplatCount). `nextCount`: NextEventCount of the
+// path.
 #pragma once
 
 #include "integrators/walk/vertex.h"

@@ -12,13 +12,14 @@ namespace lampyr {
 
 namespace {
 
-// A target right here has no direction, and of one beyond this squared distance float has none.
+// Bounds of the squared distance to a target: a target at the point itself has no direction, and farther away float
+// overflows.
 constexpr float kNoDistance = 1e-30f, kTooFar = 1e37f;
 
 inline bool HasDirection(float squaredDistance) {
   return squaredDistance > kNoDistance && squaredDistance < kTooFar;
 }
-// In this order of arguments what is no number becomes the least.
+// NaN becomes the lower bound, because of the order of the arguments.
 inline float BoundedKappa(float kappa) {
   return std::min(std::max(DirectionMixture::kLeastKappa, kappa), DirectionMixture::kMostKappa);
 }

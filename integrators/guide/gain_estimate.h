@@ -3,8 +3,8 @@
 
 namespace lampyr {
 
-// Each path tells its second moment without the guide and with it. Both are noisy, and of the same path, so that the
-// noise of their difference is less than that of each: bounds of the ratio g are where
+// Each path gives estimates of its second moment without the guide and with it. They are correlated, because both are
+// of the same path, so that their difference is less noisy than either: bounds of the ratio g are where
 //   Var(unguided) - g · Var(guided)
 // differs from 0 by a number of standard deviations of its sum over the paths ([Fieller54]).
 class GainEstimate {

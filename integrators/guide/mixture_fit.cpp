@@ -14,7 +14,7 @@ namespace {
 constexpr size_t kLobes = DirectionMixture::kLobes;
 // Iterations after each doubling of the lobes.
 constexpr int kIterations = 4;
-// Every so many-th event is looked at until there are all lobes, and then until the last iteration.
+// Strides of the subsets of events that are evaluated: until there are all lobes, and then until the last iteration.
 constexpr size_t kStride = 3, kStrideOfAll = 2;
 // Effective number of uniformly distributed events that each lobe is mixed with: few events do not make a narrow lobe.
 constexpr double kPriorEvents = 0.3;
@@ -22,7 +22,7 @@ constexpr double kPriorEvents = 0.3;
 constexpr double kFewestEvents = 12;
 // Most of the weight of a region that one event may have.
 constexpr double kLargestPart = 0.1;
-// An expected share below this is not worth its evaluation.
+// A guide with a smaller share is dropped: it would not repay its evaluation.
 constexpr double kLeastShare = 0.02;
 
 // A lobe while it is fitted, as seen from the center of the region.
@@ -32,7 +32,8 @@ struct Lobe {
   double kappa = 1, weight = 0;
 };
 
-// Sums over the events, each by its parts in the lobes. By lobe, so that a compiler vectorises them.
+// Sums over the events, weighted by the responsibilities of the lobes. Stored by lobe, so that a compiler vectorises
+// them.
 struct LobeSums {
   using Lanes = DirectionMixture::Lanes;
   alignas(32) Lanes weight{}, squares{}, nearness{};
@@ -133,14 +134,14 @@ class Fit {
   void Expect(size_t stride, bool withMoments) {
     sums_ = LobeSums();
     const DirectionMixture mixture = Mixture();
-    const bool isFirst = lobes_.size() == 1;  // of which no place is known: uniform
+    const bool isFirst = lobes_.size() == 1;  // not placed yet: uniform
     const auto share = static_cast<float>(share_);
     double guided = 0, total = 0;
     for (size_t i = 0; i < events_.size(); ++i) {
       if (stride > 1 && MixBits(i) % stride != 0) continue;
       const GuideEvent& event = events_[i];
       total += static_cast<double>(weights_[i]);
-      if (!(event.unguided > 0) || !(weights_[i] > 0)) continue;  // a delta: no lobe's
+      if (!(event.unguided > 0) || !(weights_[i] > 0)) continue;  // a delta, which no lobe samples
       alignas(32) DirectionMixture::Lanes parts;
       if (isFirst) {
         parts.fill(0.25f * kInvPi);

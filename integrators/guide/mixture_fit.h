@@ -7,19 +7,19 @@
 
 namespace lampyr {
 
-// A scattering event of a walk, with what it was worth.
+// A scattering event of a walk, with its weight in the fit.
 struct GuideEvent {
   Point3 position{0.0f};
   Vector3 direction{0.0f};  // unit, of the walk's next ray
   float distance = 0;       // to the next vertex, scene units; infinite: none
   // Density of the direction without a guide, 1/sr; 0: it was sampled as a delta, which no guide does.
   float unguided = 0;
-  float weight = 0;  // what the walk found beyond, over the density with which it went there; 0 or more
+  float weight = 0;  // radiance that the walk found beyond, over the density of its direction; 0 or more
 };
 
 // The density α · guide + (1 - α) · unguided under which the events are most likely, each as often as its weight says:
-// by expectation maximisation, in which the unguided density is one component of the mixture. So the guide learns what
-// scattering alone does not do well. Lobes are split from one to kLobes.
+// by expectation maximisation, in which the unguided density is one component of the mixture. So the guide fits the
+// light that scattering alone samples poorly. Lobes are split from one to kLobes.
 struct MixtureFit {
   DirectionMixture mixture;
   float share = 0;  // α in [0, kMostShare]; 0: not guided

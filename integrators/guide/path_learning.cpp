@@ -26,7 +26,8 @@ constexpr double kFirstPaths = 6144, kPathsPerSample = 1024, kShareOfPaths = 1.0
 constexpr double kEventsOfPath = 2, kMostMore = 6;
 // Least gain in variance of camera paths for which a guide is used: what its samples cost. Where light paths are
 // guided, too, the gain is larger than what is tested: weights leave to camera paths what those do well, and would
-// leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and still-life 1.1.
+// leave them more with a guide. Measured in bdpt, the gain as tested and the true one: 1.3 and 2.4 in door, 1.05 and
+// 1.1 in lamp, ring and still-life.
 constexpr double kWorthwhile = 1.3, kWorthwhileForBoth = 1.2;
 // Standard deviations by which the gain is above what is worthwhile before a guide is used, and by which it is above 1,
 // so that one path of all cannot decide; and below what is promising before recording ends.
@@ -35,7 +36,7 @@ constexpr double kSure = 1, kSurelyGains = 2, kSurelyNot = 2;
 constexpr double kFewestTested = 16;
 // Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
 constexpr uint32_t kLearned = 64, kHopeless = 8;
-// Part of the gain that is worthwhile for which a guide that is not used yet is given more samples.
+// Fraction of the worthwhile gain from which on a guide that is not used yet is given more samples.
 constexpr double kPromising = 0.3;
 // A guide is fitted anew when at least this share of the events is new.
 constexpr double kEnoughNew = 0.25;
@@ -183,7 +184,7 @@ bool PathLearning::Decide(uint32_t samples, int threads, bool mayUse) {
   for (const RecordedPath& path : latest_.Paths()) blocks_.Add(path.pixel, static_cast<double>(path.found));
   const std::vector<double> scales = blocks_.Scales();
   bool isWorthwhile = guide_ != nullptr;
-  // Weights of paths that were guided are not those of others: what would have been without a guide is not known then.
+  // MIS weights of guided light paths differ from those without a guide, whose second moment is then unknown.
   if (tried_ && mayUse && !(forLight_ && guide_)) {
     const GainEstimate gain = Test(scales);
     if (gain.EffectiveCount() >= kFewestTested) {

@@ -32,9 +32,8 @@ class PathLearning {
   void Learn(std::span<const PathRecords> records);
   // Called at milestones, after `samples` samples per pixel: tests the candidate, makes the next one, and updates
   // Guide(). True if the density of walks may have changed.
-  // `mayUse`: false while photons are guided and that is still being learned, or may be soon. Camera paths that are
-  // guided to the light take the weight from photons, and what those would bring if they were guided, which may be far
-  // more, is not seen any more.
+  // `mayUse`: false while the guiding of photons is being learned, or may be soon. Guided camera paths take the MIS
+  // weight from photons, and so hide the gain of guiding those, which may be far larger.
   bool Decide(uint32_t samples, int threads, bool mayUse = true);
   // Called instead of Decide at a milestone before which no paths were recorded.
   void Skip(uint32_t samples) { samples_ = samples; }

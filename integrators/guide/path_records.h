@@ -1,4 +1,4 @@
-// Records of walks for path guiding: their scattering events, and what they found beyond each.
+// Records of walks for path guiding: their scattering events, and the radiance found beyond each.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// Blocks of pixels, and what samples have found there on average: what errors are relative to where single pixels are
-// not known yet.
+// Mean brightness of blocks of pixels, to which errors are relative while single pixels are not known yet.
 #pragma once
 
 #include <algorithm>

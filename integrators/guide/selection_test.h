@@ -1,9 +1,9 @@
-// The test of learned light selection: whether choosing lights by what was learned is worth its time.
+// The test of learned light selection: does its lower variance outweigh its cost?
 //
-// Some samples tell what their variance would have been with another selection. A light sample of radiance X that was
+// Some samples estimate the variance that another selection would have had. A light sample of radiance X that was
 // chosen with the density p has the share X² of the second moment of its path; chosen with the density q it would have
-// X² p/q. The rest stays as it is. So each tested path gives its second moment for both selections, and the factors
-// that it is tested with do not know it: they were learned from earlier ones.
+// X² p/q. The rest stays as it is. So each tested path gives its second moment for both selections. The factors under
+// test are independent of the path: they were learned from earlier ones.
 #pragma once
 
 #include <cstdint>

@@ -4,10 +4,9 @@
 // Finds what path tracing cannot: caustics of point, spot and distant lights on anything that is not perfectly smooth.
 // Cannot find: what the camera sees in or through something perfectly smooth (a mirror, a pane, glass), because delta
 // vertices cannot be connected; lights at infinity seen directly (the background), which have no point to connect; and
-// light of lights with traceLightPaths off, which start no paths. It refuses cameras that no path can be connected to
-// (Camera::ConnectsLightPaths). These parts of the image are black; all others are
+// light of lights with traceLightPaths off, which start no paths. These parts of the image are black; all others are
 // unbiased. Objects that are small or far from the camera receive few paths, because paths follow the light and not the
-// camera.
+// camera. Cameras that no path can be connected to (Camera::ConnectsLightPaths) are refused.
 //
 // Depth counts scattering events between light and camera, as for `path`. Russian roulette enters the throughput only.
 #include <algorithm>
@@ -25,7 +24,7 @@ namespace {
 // Connects where the path starts, each vertex, and a point of each flight through media to the camera.
 class LensConnector final : public LightPathVisitor {
  public:
-  // `points`: null: of flights no points.
+  // `points`: null: no points of flights are connected.
   LensConnector(const SampleContext& context, int maxDepth, const FlightPoints* points)
       : context_(context), maxDepth_(maxDepth), points_(points) {}
   void Emitted(const EmittedPhoton& photon) override {
@@ -58,7 +57,7 @@ class LensConnector final : public LightPathVisitor {
   }
 
  private:
-  // `weight`: of this way to find the vertex against the other.
+  // `weight`: MIS weight of the technique that found the vertex: a collision, or a sampled point of a flight.
   void Connect(const LightPath& path, uint32_t lensDimension, double weight) {
     const auto seen = SeeVertex(context_, path.vertices.Last(), lensDimension);
     if (!seen) return;
@@ -78,8 +77,8 @@ class LensConnector final : public LightPathVisitor {
   const SampleContext& context_;
   const int maxDepth_;
   const FlightPoints* points_;
-  Point3d start_{0.0};           // of the last flight
-  bool startsAnywhere_ = false;  // on its line
+  Point3d start_{0.0};           // start of the last flight
+  bool startsAnywhere_ = false;  // the last flight comes from a light at infinity
 };
 
 class LightIntegrator final : public Integrator {

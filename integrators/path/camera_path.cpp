@@ -69,7 +69,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     radiance_ += seen;
   }
 
-  // Light that is scattered on the way to a surface whose emission alone is wanted is gathered.
+  // A ray traced for emission alone ends at a collision: photons hold the light that is scattered there.
   bool Collided(const Subpath&, const PathState&) override { return !emissionOnly_; }
 
   bool Arrived(Subpath& path, const PathState& state) override {
@@ -107,13 +107,13 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 
   bool HasEmissionToFind() const { return lighting_.HasLightThatCanBeHit() || settings_.mediaGlow; }
 
-  // A vertex in a medium at which the walk has collided, with what the density of sampling its distance for a light
-  // follows from.
+  // A vertex in a medium at which the walk has collided, with the data that determine the density of sampling its
+  // distance for a light.
   struct Arrival {
     LitSegment segment;
     double t = 0;
     double collision = 0;  // density of a collision there (EdgeFactors::forward)
-    uint64_t seed = 0;     // of apexes
+    uint64_t seed = 0;     // of the apexes' random numbers
 
     // The density of sampling the distance for this light, over that of a collision.
     double RatioOf(const LightingServices& lighting, uint32_t light, int patch) const {
@@ -133,10 +133,10 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     segment_ = LitSegment();
   }
 
-  // A vertex on the ray whose distance is sampled for a light, and its direct light from there.
-  // Adds what a segment has taken. `before`: times before it. `rays`: its shadow rays.
+  // Adds the cost of sampling a segment to the counts. `before`: times before the segment. `rays`: shadow rays of the
+  // segment.
   void CountSegment(const MediumTimes& before, uint64_t rays) const {
-    // Estimates of the lights along a segment, as measured in scenes/lighthouse and prism.
+    // Time to estimate the lights along a segment, measured in scenes/lighthouse and prism.
     constexpr double kNanoseconds = 350;
     MediumTimes& times = *context_.mediumTimes;
     times.segments += kNanoseconds + times.connections - before.connections;
@@ -144,7 +144,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     times.connections = before.connections;
   }
 
-  // False: it is not sampled, which is decided first.
+  // Samples a distance on the ray for a light, and adds direct light from the vertex there. False: no distance is
+  // sampled on this ray, which is decided at random first.
   bool SampleSegment(Subpath& path, const PathState& state, const Flight& flight) {
     const auto edge = static_cast<int>(path.Count());
     const auto pair = [&](uint32_t which) {
@@ -213,8 +214,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
                           static_cast<float>(light.factors.forward) * light.f.pdfForward);
   }
 
-  // At a vertex in a medium of which both a collision and the sampling for a light know. The densities of the vertex
-  // are over that of a collision.
+  // MIS weight of next-event estimation at a vertex in a medium, which both a collision and distance sampling for a
+  // light can make. Densities of the vertex are relative to that of a collision.
   float WeighInMedium(const LightConnection& light) const {
     const DirectSample& direct = light.direct;
     const auto pdfDirect = static_cast<double>(direct.sample->pdfDirect.value);
@@ -248,11 +249,11 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const NextEventSettings nextEvent_;
   PhotonGatherer* gatherer_;
   bool emissionOnly_ = false;  // the ray is traced for emission alone: other light from there is gathered
-  LitSegment segment_;         // of the last ray
-  double arrivesAfter_ = 0;    // where the walk ends on it
+  LitSegment segment_;         // segment of the last ray
+  double arrivesAfter_ = 0;    // distance at which the walk ends on that ray
   Arrival arrival_;            // at the last vertex
-  // While a vertex on the last ray is connected whose distance was sampled for a light:
-  const Subpath* path_ = nullptr;  // at whose last vertex lights are sampled
+  // Set while a vertex with a distance sampled for a light is connected:
+  const Subpath* path_ = nullptr;  // lights are sampled at its last vertex
   const LitSegment::Sample* sampledFor_ = nullptr;
   const PathVertex* sampled_ = nullptr;
   Color radiance_;

@@ -21,8 +21,8 @@ class PhotonGatherer {
   // False if photons are not gathered where a path collides with a medium: all directions are followed from there.
   virtual bool GathersInMedium(const PathVertex& vertex) const = 0;
   // Light of the photons in media that the ray of `state` passes, scattered towards its start, times the throughput
-  // there; of those places alone that gather (GathersInMedium), and from directions as above. `path`: its vertices
-  // before the ray.
+  // there. Only places that gather (GathersInMedium) count, and only directions as above. `path`: its vertices before
+  // the ray.
   virtual Color GatherAlong(const Subpath& path, const PathState& state, const Flight& flight) = 0;
 };
 

@@ -7,9 +7,10 @@ namespace lampyr {
 
 namespace {
 
-// Optical depth up to which every ray has a distance sampled; beyond it the probability falls in proportion.
+// Optical depth up to which a distance is sampled on every ray; beyond it the probability is inversely proportional to
+// the depth.
 constexpr double kDepthOfAll = 4;
-// Probability in grids, whose depth is not known, of rays that do not come from the camera.
+// Upper bound of that probability in grids, whose depth is not known, for rays that do not come from the camera.
 constexpr float kShareInGrids = 0.25f;
 
 // Distances in proportion to e^(-σ t) in [0, length].

@@ -23,8 +23,8 @@ inline LabelRange AppendLabels(std::span<const PathLabel> labels, std::vector<Pa
   return {first, static_cast<uint32_t>(all.size())};
 }
 
-// A vertex of a light path from which it has flown on, or its start at a light: what the weight and the densities of a
-// vertex further along the flight follow from.
+// A vertex of a light path from which it has flown on, or its start at a light: the data that determine weight and
+// densities of a vertex further along the flight.
 struct FlightStart {
   Point3d position{0.0};
   Vector3d direction{0.0};  // unit

@@ -11,8 +11,8 @@ namespace {
 
 // Radius of photons in media in the first pass by default, in pixel footprints.
 constexpr double kVolumeRadiusInPixels = 1;
-// As wide as pixels are so far behind the photon, in radii of the scene: photons right before the camera would
-// otherwise be without bound, as 1 / distance².
+// A photon's radius is that of a pixel at this distance behind it, in radii of the scene: contributions of photons near
+// the camera would otherwise be without bound, as 1 / distance².
 constexpr double kNearInRadii = 0.25;
 
 VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
@@ -24,7 +24,7 @@ VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
   const Ray ray = camera.GenerateRay(middle, Point2(0.5f), 0).ray;
   volume.eye = ray.origin;
   const double area = PixelArea(camera, ray, input.FilmPixels(), 1);
-  // Of a camera whose densities are unknown: a pixel of an angle of view of 53 degrees.
+  // For a camera whose densities are unknown: a pixel with an angle of view of 53 degrees.
   const double width = kVolumeRadiusInPixels * (area > 0 ? std::sqrt(area) : 1 / std::sqrt(input.FilmPixels()));
   if (camera.ConnectsByDirection()) {
     volume.constant = width;
@@ -54,14 +54,14 @@ PhotonSettings PhotonSettingsOf(const IntegratorInput& input) {
 
 namespace {
 
-// Photons are beams where this is the most that the radius is, in mean free paths. The density of merging with beams is
-// 2 sinθ / (π r σ_t) times that with points, and the share of paths that leave beams costs some of that.
+// Photons in a medium are beams if the radius is below this number of mean free paths. The density of merging with
+// beams is 2 sinθ / (π r σ_t) times that with points, and the share of paths that leave beams costs some of that.
 constexpr double kMostRadiusInMeanFreePaths = 0.02;
 // Beams that a camera ray across the picture is to pass, by their share: each merge takes longer than next-event
 // estimation.
 constexpr double kBeamsPerRay = 4;
-// Width of the kernel between beams, relative to that of other photons in media: what is narrower needs more beams for
-// as many merges, and blurs less. The blur is felt where beams start in the medium.
+// Width of the kernel between beams, relative to that of other photons in media: a narrower kernel needs more beams for
+// as many merges, and blurs less. Blur is visible where beams start in the medium.
 constexpr double kBeamWidth = 0.5;
 
 }  // namespace
@@ -90,7 +90,7 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
   const double share = std::min(kBeamsPerRay * std::sqrt(pixels) / (2 * kBeamWidth * paths), 1.0);
   volume.beamShare = std::min(share * input.fewer, 1.0);
   volume.beamScale = kBeamWidth * share / volume.beamShare;
-  // So many light paths as collide leave a second beam.
+  // A light path leaves a second beam only if it collides.
   volume.scatteredBeamShare = std::min(volume.beamShare / std::min(std::max(depth, 1e-3), 1.0), 1.0);
 }
 

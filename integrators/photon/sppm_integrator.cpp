@@ -76,8 +76,8 @@ class SppmIntegrator final : public Integrator {
   std::unique_ptr<const GlowingMedia> glowing_;
 };
 
-// Stores the photons of a light path from its second vertex on, or from its first. Photons of glowing media, too, are
-// direct light at their first vertex: the rays that camera paths trace for emission find it.
+// Stores the photons of a light path from its second vertex on, or from its first. Photons from glowing media are
+// direct light at their first vertex, too, which the rays traced for emission find.
 class PhotonRecorder final : public LightPathVisitor {
  public:
   PhotonRecorder(const SampleContext& context, const SppmSettings& settings)
@@ -101,7 +101,7 @@ class PhotonRecorder final : public LightPathVisitor {
 
  private:
   // In a medium: false if the radius is too large for the medium in all passes that may gather the photon. Dense media
-  // would otherwise be full of photons that nobody wants.
+  // would otherwise fill with photons that are never gathered.
   bool MayBeGathered(const PathVertex& vertex) const {
     const Point3& at = vertex.point.position;
     if (photons_.volume.OfGathered(at, vertex.extinction) > 0) return true;

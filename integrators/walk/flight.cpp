@@ -82,7 +82,7 @@ class Tracker {
 
   Color value{1.0f};      // Π σ_n / σ̄: transmittance
   Color density{1.0f};    // the same, of the media that walks collide with
-  Color emission;         // of what was followed since it was reset, over the density
+  Color emission;         // of the spans since the last reset, over the density
   MediumCoefficients at;  // of the collision
   double t = 0;           // of the collision
   bool wantsEmission = false, wantsTime = false;
@@ -204,7 +204,7 @@ Buffers& BuffersOfConnections() {
   return buffers;
 }
 
-// Brings what surfaces let through to the wavelengths of the scene.
+// Converts the transmittances of crossed surfaces to the wavelengths of the scene.
 void Tune(const RenderScene& scene, std::vector<Crossing>& crossings) {
   if (scene.wavelengths) [[unlikely]]
     TuneCrossings(*scene.wavelengths, crossings);

@@ -102,8 +102,8 @@ struct Flight {
 // An end of an edge.
 struct EdgeEnd {
   Point3d position{0.0};     // beyond float (PathVertex::Position)
-  int32_t medium = kVacuum;  // in which a ray from there starts; not looked at of the end of a ray
-  Color extinction{1.0f};    // 1 of what is not in a medium
+  int32_t medium = kVacuum;  // in which a ray from this end starts; not used at the far end of a ray
+  Color extinction{1.0f};    // σ_t at a vertex in a medium, otherwise 1
   bool isFine = false;       // FineLine
 
   // A vertex in a medium whose mean free path is not far above the rounding of positions.
@@ -113,8 +113,9 @@ struct EdgeEnd {
   }
 };
 
-// Traces a ray from `start`. `dimension`: of the sampler, of a pair for the distance and the channel. `wantsBeam`:
-// Flight::beam is wanted. A ray that is rejected (GeometryScene::RejectedRays) carries nothing: Flight::passed is 0.
+// Traces a ray from `start`. `dimension`: sampler dimension of the pair of random numbers for distance and channel.
+// `wantsBeam`: Flight::beam is wanted. A ray that is rejected (GeometryScene::RejectedRays) carries nothing:
+// Flight::passed is 0.
 void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, uint32_t dimension,
          bool wantsBeam, Flight& flight);
 

@@ -11,7 +11,7 @@ namespace lampyr {
 
 namespace {
 
-// Optical depth of the way to the camera, or of the sphere of media, up to which every point that is sampled is taken.
+// Optical depth up to which every sampled point is used: of the way to the camera, or of the sphere around the media.
 constexpr double kDepthOfTaken = 4;
 
 // The largest extinction of a medium, 1/scene unit.
@@ -73,8 +73,8 @@ double FlightPoints::ShareAt(const Point3d& position, int32_t medium) const {
   return depth > kDepthOfTaken ? kDepthOfTaken / depth : 1.0;
 }
 
-// The part of the line in the sphere, before all planes, and beyond `least`. Directions are of float, and not quite
-// unit: a square of the distance to the sphere's middle would be off by more than the sphere, where that is far.
+// The part of the line in the sphere, before all planes, and beyond `least`. Directions are rounded to float and not
+// exactly unit: for a distant sphere, the error of a squared distance to its centre would exceed the sphere.
 FlightPoints::Range FlightPoints::RangeOf(const Point3d& origin, const Vector3d& direction, double least) const {
   Range range;
   const Vector3d toCenter = center_ - origin;
@@ -99,7 +99,8 @@ FlightPoints::Range FlightPoints::RangeOf(const Point3d& origin, const Vector3d&
   }
   if (!(range.to > range.from)) return range;
   range.foot = -glm::dot(fromPlace, direction) / length;
-  // A place that is nearer to the line than directions of float tell is as good as on it: the density stays finite.
+  // Lower bounds of the height of the camera above the line: directions in float resolve no smaller one, and the
+  // density stays finite.
   constexpr double kSpacing = 0x1p-16, kOfRadius = 0x1p-30;
   const double furthest = std::max(std::abs(range.from - range.foot), std::abs(range.to - range.foot));
   range.height = std::max({glm::length(fromPlace + range.foot * direction), kSpacing * furthest, kOfRadius * radius_,

@@ -17,7 +17,8 @@ namespace lampyr {
 
 class FlightPoints {
  public:
-  // Null if the camera sees no medium that scatters along straight lines, or has no place that distances refer to.
+  // Null if the camera sees no medium that scatters along straight lines, or if the camera has no single position
+  // (Camera::View).
   static std::shared_ptr<const FlightPoints> Of(const RenderScene& scene);
 
   struct Sample {
@@ -28,8 +29,8 @@ class FlightPoints {
   // infinity. `u`: in [0,1).
   std::optional<Sample> Generate(const FineLine& line, bool startsAnywhere, double u) const;
 
-  // Probability with which a point that was sampled in the medium is taken. Less than 1 where walks collide anyway, and
-  // little of the light gets to the camera.
+  // Probability of using a point that was sampled in the medium. Less than 1 at great optical depth, where walks
+  // collide anyway and little light reaches the camera.
   double ShareAt(const Point3d& position, int32_t medium) const;
 
   // Density of taking a point of a flight, its share included, 1/scene unit. `toStart`: unit, to where the flight
@@ -60,8 +61,8 @@ class FlightPoints {
 
 // Adds to `path` a vertex at a point of its flight that is sampled for the camera, for the connection to it alone: the
 // caller drops it. Its throughput is over the density of the point; its factors are those of a walk that collided
-// there. `photon`: of a path that starts at a light; null: in a medium. `dimension`: of the sampler, of a pair. False:
-// none.
+// there. `photon`: emission of a path that starts at a light; null: the path starts in a medium. `dimension`: sampler
+// dimension of a pair. False: no point was sampled.
 bool AddFlightVertex(const SampleContext& context, const FlightPoints& points, const PathState& state,
                      const Flight& flight, const EmittedPhoton* photon, Sampler& sampler, uint32_t dimension,
                      LightPath& path);

@@ -40,7 +40,8 @@ struct VolumeRadius {
   // there are few.
   double beamShare = 1, scatteredBeamShare = 1;
   double beamScale = 1;  // width of the kernel between beams, relative to the radius
-  // Photons whose radius is more mean free paths are not gathered: others find that light.
+  // Upper bound of the radius, in mean free paths: photons with a larger one are not gathered, and other techniques
+  // find that light.
   double mostMeanFreePaths = std::numeric_limits<double>::infinity();
 
   float At(const Point3& position) const {
@@ -79,7 +80,8 @@ struct PhotonSettings {
   bool guided = true;      // emission guiding, if it reduces the noise enough (emission_learning.h)
 };
 
-// The variance that a path would gain by one light at each vertex instead of several; from samples of several.
+// The variance that a path would gain with one light at each vertex instead of several, estimated from paths with
+// several.
 struct LightSpread {
   double squares = 0;  // Σ over vertices of the variance of one sample of those there, chosen at random
   uint64_t vertices = 0, samples = 0;  // where lights were chosen, and how many
@@ -132,7 +134,7 @@ struct SampleContext {
   // (photon/merge_bias.h). Null: not wanted.
   Color* mergeBias = nullptr;
   LightSpread* lightSpread = nullptr;  // may be null
-  // Receives what the light samples of this sample would have been worth if lights were chosen in another way; what
+  // Receives the second moments that the light samples would have had with another light selection; the irradiance that
   // arrived is recorded for learned selection. Null: not wanted.
   TestedSamples* tested = nullptr;
   MediumTimes* mediumTimes = nullptr;  // null: not wanted
@@ -155,7 +157,7 @@ class Integrator {
   virtual ~Integrator() = default;
 
   virtual TracedPaths Paths() const = 0;
-  // False if camera paths end where light is scattered widely: they have nothing to be guided for.
+  // False if camera paths end at the first wide scattering. Such paths are not guided.
   virtual bool FollowsCameraPaths() const { return Paths() != TracedPaths::Light; }
   // Estimates the radiance arriving along `ray`, and records the splats and photons of the light path. With a null
   // ray (the pixel is not wanted, or the integrator traces light paths only) it records those only and returns black.

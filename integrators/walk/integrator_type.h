@@ -21,7 +21,7 @@ struct IntegratorInput {
   float imagingRatio = 1;     // film value of radiance 1
   const Settings& settings;
   const TechniqueCounts* counts = nullptr;  // of bidirectional integrators; null: all techniques once
-  double splatCount = 1;                    // samples of a pixel that a splat is worth
+  double splatCount = 1;                    // sample count of splats in weights (SplatCount)
   double fewer = 1;                         // pixels of the image over light paths of a pass; above 1 in a pilot
 
   double FilmPixels() const { return static_cast<double>(width) * static_cast<double>(height); }

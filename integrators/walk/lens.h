@@ -1,7 +1,6 @@
 // Connections of light paths to the lens (t = 1), from their vertices and from their starting point on a light or in a
-// participating medium
-// ([Veach97 §10.3.4.1]; the weight of a connection is in camera/camera.h). And emission of lights at infinity, which
-// the camera sees without a connection.
+// participating medium ([Veach97 §10.3.4.1]; the weight of a connection is in camera/camera.h). Also the emission of
+// lights at infinity, which the camera sees without a connection.
 #pragma once
 
 #include <optional>

@@ -122,7 +122,7 @@ bool EmitInMedium(const SampleContext& context, const EmittedInMedium& emitted, 
   return state.emitted > 0;
 }
 
-// What TraceLightPath is asked for, with the random point of the start.
+// Arguments of TraceLightPath, and the random numbers of the starting point.
 struct PathRequest {
   const SampleContext& context;
   const int maxDepth;
@@ -198,7 +198,7 @@ double PowerOfLights(const RenderScene& scene) {
     light.transform = &lights[i].transform;
     light.scene = scene.lighting->SceneSphere();
     const double estimate = static_cast<double>(lights[i].light->GetPowerEstimate(light).Average());
-    // Lights that start paths have a part of them, whatever they estimate.
+    // Positive even if the estimates of all lights are 0: lights that start paths get a share of the paths.
     if (estimate > 0) power += std::min(estimate, static_cast<double>(std::numeric_limits<float>::max()));
     power = std::max(power, static_cast<double>(std::numeric_limits<float>::min()));
   }

@@ -52,7 +52,7 @@ class GlowingMedia {
   // `scene` has to outlive it.
   explicit GlowingMedia(const RenderScene& scene);
 
-  // Of a path to start in a medium; 0: none of them emits.
+  // Probability that a path starts in a medium; 0: no medium emits.
   double Probability() const { return probability_; }
   const MediumEmission& Emission() const { return emission_; }
 

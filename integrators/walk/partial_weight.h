@@ -12,8 +12,8 @@
 // techniques at the ends of the path (s = 0, s = 1, t = 1), and the connections of two subpaths, which a pixel may make
 // more rarely than there are light paths (technique_counts.h).
 //
-// With n light paths for each camera path, LightEnd::emission is n times the density of one. A splat (t = 1) counts for
-// as many samples of a pixel as it is worth: it is spread over all pixels in whose filter it is.
+// With n light paths for each camera path, LightEnd::emission is n times the density of one. A splat (t = 1) has a
+// sample count of its own, because it is spread over all pixels in whose filter it is.
 //
 // Merging is not carried: its terms depend on the whole path, and take time in proportion to its length
 // (bidirectional/path_densities.h).
@@ -39,7 +39,7 @@
 namespace lampyr {
 
 // (p_i / p)^β, the term of technique i in the denominator of a weight, for the ratio p_i / p of its density to that of
-// the technique being weighted. Of a density: its factor of such a term.
+// the technique being weighted. Applied to a density, the factor of that density in such a term.
 inline double Mis(double ratio) {
   return ratio * ratio;
 }
@@ -56,7 +56,7 @@ inline float PowerHeuristic(PdfSolidAngle own, PdfSolidAngle other) {
   return 1.0f / (1.0f + ratio * ratio);
 }
 
-// Next-event estimation counts this often in the weights of paths with so many surface vertices. Samples of a light
+// Sample count of next-event estimation in the weights of a path with this many surface vertices. Samples of a light
 // differ less among each other than photons and rays that happen to meet it, which densities do not tell ([Grittmann19]
 // has the exact factor). Only direct light can have another count than 1: partial weights hold the term of next-event
 // estimation apart (ends.last) at the first vertex of a light path only. Measured with 1, 2 and 4 in six scenes, vcm: 2
@@ -168,7 +168,8 @@ struct PartialWeight {
     counted.ends.last *= 1 + Mis(ratio);
     return counted;
   }
-  // Of a light subpath, with next-event estimation counted as in a path of so many surface vertices.
+  // The partial weight of a light subpath, with next-event estimation counted as in a path of this many surface
+  // vertices.
   PartialWeight WithNextEvents(size_t surfaceVertices) const {
     PartialWeight counted = *this;
     counted.ends.last *= Mis(NextEventCount(surfaceVertices));

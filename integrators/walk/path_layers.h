@@ -1,4 +1,4 @@
-// Contributions of paths to the layers of a sample. To be called only with SampleContext::layers, but for LabelsOfLast.
+// Contributions of paths to the layers of a sample. All functions but LabelsOfLast require SampleContext::layers.
 #pragma once
 
 #include "integrators/walk/integrator.h"

@@ -28,8 +28,8 @@ struct RenderScene {
   std::shared_ptr<const Camera> camera;
   std::vector<std::shared_ptr<const Medium>> media;  // by GeometryAttributes::insideMedium and outsideMedium
   int32_t cameraMedium = kVacuum;                    // where camera rays start (MediumOf)
-  // If camera rays start in several media, because the camera is on a boundary or is cut by one, or may, because
-  // something moves: the medium of those that meet no surface that says it.
+  // Medium of camera rays that hit no surface from which it follows. Set if camera rays start in several media (the
+  // camera is on a boundary, or a boundary cuts it), or may do so because something moves.
   std::optional<int32_t> cameraExterior;
   std::shared_ptr<const OutputPlan> outputs;  // layers of the image; not null in scenes that were built
   int32_t exterior = kVacuum;                 // where rays leave the scene, and lights at infinity shine from
@@ -38,10 +38,10 @@ struct RenderScene {
       lightBackMedia;  // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   std::vector<uint8_t> lightStartsVary;  // by light: whether its rays start in several media, as cameraExterior has it
   std::optional<int32_t>
-      unbounded;  // of points from which nothing bounds media but opaque surfaces, if the camera is such a point
-  std::shared_ptr<const PathGuide> guide;  // where walks go after wide scattering; null: as surfaces scatter
+      unbounded;  // medium of points around which only opaque surfaces bound media; set if the camera is such a point
+  std::shared_ptr<const PathGuide> guide;  // guide of walks after wide scattering; null: walks are not guided
   // Light is carried by wavelength: each pass is given the scene at its wavelengths (AtWavelengths), and
-  // `wavelengths` is null in that of which it is made, whose colours are in Rec. 709.
+  // `wavelengths` is null in the scene from which these are made, whose colours are in Rec. 709.
   bool isSpectral = false;
   std::shared_ptr<const Wavelengths> wavelengths;
   std::vector<std::shared_ptr<const Material>> tunedAfterWide;  // WalkSettings::materialsAfterWide at the wavelengths
@@ -53,7 +53,8 @@ struct RenderScene {
   // The scene at the wavelengths of a pass. `afterWide`: materials behind a wide scattering, or none.
   RenderScene AtWavelengths(const std::shared_ptr<const Wavelengths>& wavelengths,
                             const std::vector<std::shared_ptr<const Material>>& afterWide) const;
-  // GeometryScene::Transmittance and GeometryScene::Intersect, as light is carried here; for scenes without media.
+  // GeometryScene::Transmittance and GeometryScene::Intersect, with colours at the scene's wavelengths; for scenes
+  // without media.
   Color Transmittance(const Ray& ray, uint32_t kinds) const {
     if (!wavelengths) [[likely]]
       return geometry->Transmittance(ray, kinds);
@@ -121,11 +122,11 @@ struct PathDimensions {
   constexpr uint32_t Of(int vertex, uint32_t which) const {
     return dimensions::kFirstVertex + static_cast<uint32_t>(step * vertex + first) * dimensions::kPerVertex + which;
   }
-  // Of a pair for the flight through participating media to vertex v.
+  // Dimension of the pair for the flight through participating media to vertex v.
   constexpr uint32_t OfFlight(int vertex) const {
     return dimensions::kFirstFlight + static_cast<uint32_t>(step * vertex + first);
   }
-  // Of the edge to vertex v.
+  // Dimension of a pair for distance sampling on the edge to vertex v.
   constexpr uint32_t OfSegment(int vertex, uint32_t which) const {
     return dimensions::kFirstSegment + static_cast<uint32_t>(step * vertex + first) * dimensions::kPerSegment + which;
   }

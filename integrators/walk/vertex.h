@@ -60,7 +60,7 @@ struct Vertex {
   float ScatteringCosine(const Vector3& direction) const { return bsdf.ScatteringCosine(direction); }
   // Geometry term of an edge along `direction`: |cosθ| to the geometric normal; of a fibre, as above.
   float GeometryTerm(const Vector3& direction) const { return bsdf.GeometricCosine(direction); }
-  // `region`: null, or what is learned of this place. To be called when `toPrevious` is set.
+  // `region`: the guide of this place, or null. To be called when `toPrevious` is set.
   void SetGuide(const GuideRegion* region) {
     guide = region;
     reverseGuide_.fill(kUnknown);
@@ -80,7 +80,7 @@ struct Vertex {
     if (IsInMedium() || other.IsInMedium()) return other.Position() - Position();
     return Vector3d(other.point.position - point.position);
   }
-  // False where photons would not tell how much light there is.
+  // False on hair and in media (Bsdf::GathersPhotons).
   bool GathersPhotons() const { return bsdf.GathersPhotons(); }
 
   // With shading normals importance scatters differently from radiance ([Veach97 §5.3]). Radiance that arrives from wl,
@@ -112,7 +112,7 @@ struct Vertex {
   // Mixes the guides into the densities of `f`. `reverse`: density of the way back by the guide of the other walk.
   void Guide(const Vector3& to, TransportMode mode, PdfSolidAngle reverse, BsdfEvaluation& f) const;
   PdfSolidAngle ReverseGuide(const Vector3& from, TransportMode mode) const;
-  // Of `toPrevious`; the same for all directions that are evaluated here.
+  // Density of `toPrevious` by the guide; the same for all directions that are evaluated here.
   PdfSolidAngle ReverseGuide(TransportMode mode) const {
     PdfSolidAngle& known = reverseGuide_[static_cast<size_t>(mode)];
     if (known.value < 0) known = ReverseGuide(toPrevious, mode);
@@ -128,7 +128,7 @@ struct Vertex {
   mutable std::array<PdfSolidAngle, 2> reverseGuide_{kUnknown, kUnknown};  // by mode
 };
 
-// True for a square of a length in the middle of the range of float: lengths below 1e-19 have none.
+// True if a squared length is precise in float: squares of lengths below 1e-19 underflow.
 inline bool IsPreciseSquare(float squared) {
   return squared > 1e-30f && squared < 1e30f;
 }

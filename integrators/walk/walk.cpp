@@ -79,8 +79,8 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
   if (!scene.media.empty()) [[unlikely]] {  // nothing reads these otherwise
-    // What lets nothing pass is left on the side on which it was met, in the medium of the ray. An open sheet, such as
-    // a floor or a panel, is met from both sides, whatever it says of the other one.
+    // A path leaves an opaque surface on the side on which it was hit, in the medium of the ray: an open surface, such
+    // as a floor or a panel, may be hit from both sides, whatever medium it declares on the other one.
     const bool separates = SeparatesMedia(attributes) && vertex.bsdf.IsTransmissive();
     vertex.insideMedium = separates ? attributes.insideMedium : medium;
     vertex.outsideMedium = separates ? attributes.outsideMedium : medium;
@@ -93,12 +93,14 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   return true;
 }
 
-// What float has cut off. Not inlined: GCC 12 takes the conversion to float and back of two lanes for the identity.
+// The rounding error of a position in float. Not inlined: GCC 12 takes the conversion to float and back of two lanes
+// for the identity.
 [[gnu::noinline]] Vector3 RestOf(const Point3d& exact, const Point3& rounded) {
   return Vector3(exact - Point3d(rounded));
 }
 
-// A surface point that is not where the flight ends, but for rounding, is of a surface that is met by float alone.
+// A surface point that differs from the flight's end by more than rounding has no residual: its surface is intersected
+// in float alone.
 void SetResidual(const Flight& flight, Vertex& vertex) {
   const Vector3d residual = flight.end - Point3d(vertex.point.position);
   const double size = static_cast<double>(MaxAbsComponent(vertex.point.position) + flight.t);
@@ -202,7 +204,8 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
     return Continues(context, settings.dimensions.Of(block, dimensions::kRoulette), settings.continuing, state);
   if (!settings.hasRoulette) return true;
   const Color carried = isFromLight ? state.diffuse : state.Throughput();
-  // What the path would carry without a guide: where guides send paths, they carry little and yet matter.
+  // The throughput that the path would have without a guide: guided paths have a small throughput where much light is
+  // expected.
   const float survival = SurvivalProbability(carried / state.emitted, state.etaScale * state.guidance, index + 1);
   return Survives(context, settings.dimensions.Of(block, dimensions::kRoulette), survival, state);
 }

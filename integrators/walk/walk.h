@@ -21,8 +21,8 @@ struct PathState {
   Color diffuse, specular;
   SolidAngleDensity pdfDirection;  // density of the ray's direction at the last vertex (DensitiesOf)
   int32_t medium = kVacuum;        // participating medium in which the ray starts
-  // Of a path without vertices: from the ray's origin to where it starts, which is on the surface of a lamp if it is an
-  // area light.
+  // For a path without vertices: vector from the ray's origin to the start of the path, which is on the surface if the
+  // light is an area light.
   Vector3 fromOrigin{0.0f};
   // Transmittance of what the last ray crossed; in media that scatter, over the density of getting through. Already a
   // factor of β.
@@ -30,7 +30,7 @@ struct PathState {
   EdgeFactors factors;  // of the last ray, by participating media
   float length = 0;     // of the whole path so far
   float etaScale = 1;   // undoes the scaling of radiance by η² in refraction, for Russian roulette
-  // Of the path's events: Π Guidance::forward, for Russian roulette, and that of the last one.
+  // Π Guidance::forward over the path's events, for Russian roulette; and the factor of the last event.
   float guidance = 1;
   Guidance lastGuidance;
   bool isDispersed = false;         // only one lane is left (SampleContext::lane)
@@ -100,8 +100,8 @@ class PathVisitor {
   // Radiance emitted by media along the ray of `state`, as it arrives at the ray's start; its throughput is that of
   // `state`.
   virtual void Glowed(const Subpath& /*path*/, const PathState&, const Color& /*radiance*/) {}
-  // The ray of `state` has been traced through media. Called before β and the vertices know of it, if the settings ask
-  // for flights.
+  // The ray of `state` has been traced through media. Called before β and the vertices are updated, if
+  // WalkSettings::seesFlights.
   virtual void Flew(Subpath& /*path*/, const PathState&, const Flight&) {}
   // The ray has collided with a participating medium, before a surface or an escape. False: the path ends there.
   virtual bool Collided(const Subpath& /*path*/, const PathState&) { return true; }

@@ -1,6 +1,6 @@
 // Selection where lights have sample counts of their own: a light whose fixedSampleCount is n is sampled n times at
-// each receiver, and the other lights are selected among themselves. Selection for emission, and for segments of rays,
-// takes no account of it.
+// each receiver, and the other lights are selected among themselves. Selection for emission and for segments of rays
+// ignores these counts.
 #pragma once
 
 #include <memory>

@@ -104,7 +104,7 @@ void LightLearning::CopyFrom(const LightLearning& other) {
       counts_[i].store(other.counts_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
     }
   };
-  ForUsedRows(copy);  // rows that the other one has not used become 0
+  ForUsedRows(copy);  // rows that `other` has not used become 0
   other.ForUsedRows(copy);
   for (size_t word = 0; word < kRows / 64; ++word)
     used_[word].store(other.used_[word].load(std::memory_order_relaxed), std::memory_order_relaxed);

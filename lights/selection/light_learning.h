@@ -47,7 +47,7 @@ class LightLearning {
   // Ends recording, and forgets all. Not concurrently with selection or recording.
   void Forget();
 
-  // Copies the state of another one of the same scene. Not concurrently with the use of either.
+  // Copies the state of another object of the same scene. Not concurrently with the use of either.
   void CopyFrom(const LightLearning& other);
 
   // Saves factors and records. Not concurrently with selection or recording.

@@ -127,7 +127,8 @@ std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights)
 
 namespace {
 
-// Without regard to sample counts of lights. `byImportance`: Tree and Exhaustive look at importance.
+// A selector that ignores sample counts of lights. `byImportance`: Tree and Exhaustive select by importance, otherwise
+// uniformly.
 std::unique_ptr<LightSelector> MakeSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                             const BoundingSphere& scene, bool byImportance) {
   if (byImportance && selection == LightSelection::Tree)
@@ -146,7 +147,7 @@ std::unique_ptr<LightSelector> MakeSelector(LightSelection selection, std::span<
 
 std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                                  const BoundingSphere& scene) {
-  // For one light, or the two halves of one rectangle, importance is not worth its time.
+  // For one light, or the two halves of one rectangle, importance does not repay its cost.
   const bool hasChoice = lights.size() > 1 || (lights.size() == 1 && lights[0].light->PatchCount() > 2);
   std::unique_ptr<LightSelector> whole = MakeSelector(selection, lights, scene, hasChoice);
   const std::vector<int> counts = FixedCounts(lights);
@@ -155,7 +156,7 @@ std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::
     if (counts[i] == 0) others.push_back(lights[i]);
   }
   if (others.size() == lights.size()) return whole;
-  // Both select patches, or neither does.
+  // `whole` and the selector of the others both select patches, or neither does.
   return MakeFixedCountSelector(lights, counts, scene, std::move(whole),
                                 others.empty() ? nullptr : MakeSelector(selection, others, scene, hasChoice));
 }

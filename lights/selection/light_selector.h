@@ -81,8 +81,8 @@ class LightSelector {
   }
   // True if Record has an effect for some receivers.
   virtual bool Learns() const { return false; }
-  // Records in `learning` the irradiance that a light caused that was selected with `settings`, which may be another
-  // selection than what is learned is for; 0: it was occluded or dark.
+  // Records in `learning` the irradiance caused by a light that was selected with `settings`; 0: it was occluded or
+  // dark. `settings` may be of another selection than the learned one.
   virtual void Record(LightLearning&, const Receiver&, const SelectionSettings& /*settings*/, uint32_t /*light*/,
                       int /*patch*/, double /*irradiance*/) const {}
   // True if patches of lights are selected individually at this receiver; Probability then depends on `patch`.

@@ -127,9 +127,11 @@ class LightTree {
     alignas(64) float doubt[kWidth];
   };
   void EvaluateNode(uint32_t node, const TreeSegment& segment, SegmentView& view) const;
-  // Replaces the importances of emitters by their own where they are more than a small part of `total`.
+  // Replaces the importances of emitters by the estimates of their lights where they are more than a small part of
+  // `total`.
   void AskEmitters(uint32_t node, const SegmentEmitters& emitters, double total, double* importance) const;
-  // Of a node below the cut, with those of emitters; by intensity if no child has importance.
+  // Evaluates the children of a node below the cut, emitters by the estimates of their lights; by intensity if no child
+  // has importance.
   void LookBelow(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters, SegmentView& view) const;
   double SeenThrough(const Cut& cut, uint32_t node) const;
   // First-order variation over a cluster: the contribution of an emitter relative to one of the same intensity at the

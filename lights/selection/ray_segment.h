@@ -1,4 +1,4 @@
-// A segment of a ray in a medium, for which a light is selected, and what selection asks of the lights about it.
+// A segment of a ray in a medium, for which a light is selected; and the estimates of the lights for it.
 #pragma once
 
 #include <cstdint>

@@ -1,10 +1,10 @@
-// Importance of a cluster of emitters for a segment of a ray in a medium: an estimate of what light it scatters into
-// the ray there. The light tree selects in proportion to it.
+// Importance of a cluster of emitters for a segment of a ray in a medium: an estimate of the cluster's light that the
+// medium scatters into the ray. The light tree selects in proportion to it.
 //
 // It is ∫ I/d² dt over the segment, which is the angle under which the cluster sees the segment, over its distance from
 // the line, times the largest cosine that the cluster has towards any point of the segment. Equiangular sampling leaves
-// just this integral as the weight of a sample ([Kulla12]). Dark are only clusters from which no point of the segment
-// receives light.
+// just this integral as the weight of a sample ([Kulla12]). Importance is 0 only for clusters from which no point of
+// the segment receives light.
 #pragma once
 
 #include "lights/selection/importance.h"

@@ -95,7 +95,7 @@ class TreeSelector final : public LightSelector {
     });
   }
 
-  // Lights at infinity are not told apart by what is learned.
+  // Learning does not distinguish lights at infinity.
   bool Learns() const override {
     const bool hasChoice = emitters_.first.back() - emitters_.far.size() > 1 || !farTable_.IsZero();
     return std::is_same_v<Search, LightTree> && !search_.IsEmpty() && hasChoice;
@@ -128,13 +128,13 @@ class TreeSelector final : public LightSelector {
     return static_cast<uint32_t>(at - emitters_.far.begin());
   }
 
-  // Null: the light has no such patch, or several, of which none is meant.
+  // Null: the light has no such patch, or has several and `patch` is kAnyPatch.
   std::optional<uint32_t> EmitterOf(uint32_t light, int patch) const {
     const uint32_t first = emitters_.first[light], count = emitters_.first[light + 1] - first;
     const uint32_t index = count > 1 ? static_cast<uint32_t>(patch) : 0u;
     return index < count ? std::optional(first + index) : std::nullopt;
   }
-  // The sum of `probabilityOf` over the emitters of a light that are meant: with kAnyPatch all of its patches.
+  // The sum of `probabilityOf` over the emitters of a light that `patch` selects: with kAnyPatch, all of its patches.
   template <class Function>
   PdfDiscrete SumOver(uint32_t light, int patch, const Function& probabilityOf) const {
     if (patch == kAnyPatch) {
@@ -161,7 +161,7 @@ class TreeSelector final : public LightSelector {
             static_cast<double>(segment.length) * scale};
   }
 
-  // The emitters of the search for one segment, by what their lights say.
+  // The emitters of the search for one segment, by the estimates of their lights.
   struct EmittersOfLights final : SegmentEmitters {
     const Emitters& emitters;
     const SegmentLights& lights;

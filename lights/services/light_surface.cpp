@@ -60,7 +60,7 @@ void LightSurface::Map::SetPoint(const LocalHit& hit, const RayDouble& ray, Surf
   point.uv = hit.uv;
 }
 
-// A point moves in straight lines from key to key: where it is at the keys, and at both ends, bounds it.
+// A point moves along straight lines between keys: its positions at the keys and at both ends bound it.
 Bounds3 LightSurface::GetBounds(float begin, float end) const {
   std::vector<Affine> places;
   if (motion_) {

@@ -29,7 +29,7 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   return hit;
 }
 
-// The scene's sphere. Within an unbounded medium it holds what light travels between.
+// The scene's bounding sphere. With an unbounded medium it also holds the camera and all lights with a position.
 BoundingSphere SphereAround(const GeometryScene& geometry, const std::vector<PlacedLight>& lights,
                             const MediaAround& media) {
   BoundingSphere sphere = geometry.GetBoundingSphere();
@@ -115,8 +115,7 @@ LightingServices LightingServices::With(LightLearning* learning, const EmissionG
 
 namespace {
 
-// a / b by channel. Where b is too small to tell, or negative, as saturated colours may be: that of the largest
-// channel.
+// a / b by channel. Where b is too small or negative, as in saturated colours: the quotient of the largest channel.
 Color Quotient(const Color& a, const Color& b) {
   constexpr float kSmall = 1e-3f;
   const float largest = b.Max();

@@ -83,12 +83,12 @@ struct SegmentSample {
   }
 };
 
-// What lights need to know of participating media.
+// Properties of the participating media that the lighting services depend on.
 struct MediaAround {
   bool glow = false;     // some emit light
   double glowPower = 0;  // roughly, W: mean of the channels
   // A medium without a boundary is around the scene. It fills the scene's sphere, which then holds this point (the
-  // camera) and all lights that are somewhere.
+  // camera) and all lights with a position.
   std::optional<Point3> unboundedAt;
 };
 

@@ -15,8 +15,8 @@ struct CameraPaths {
   CandidateCost cost;
 };
 
-// Σ error · Σ cost is least where in each tile that choice is made which has the least e/E + c/C, with E and C the sums
-// of all choices. A tile chooses whether it merges and, of the options, how far its camera paths go.
+// The product Σ error · Σ cost is minimised by the choice with the least e/E + c/C in each tile, where E and C are the
+// sums over all tiles. A choice is merging or not, and one of the options, which differ in where camera paths end.
 //
 // Where only merging finds some of the light, it merges always or with the probability that minimises error × cost, and
 // now and then everywhere else, so that the mean is right wherever the pilot has seen nothing of that light.

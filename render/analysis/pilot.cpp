@@ -51,7 +51,7 @@ void Guide(PilotCandidate& candidate) {
   for (double& variance : candidate.tileVariances) variance *= kNoise * kNoise;
 }
 
-// For the pilot.
+// The settings with all techniques, for the pilot.
 RenderSettings WithAllTechniques(const RenderSettings& settings) {
   RenderSettings all = settings;
   all.integrator = "vcm";
@@ -61,7 +61,7 @@ RenderSettings WithAllTechniques(const RenderSettings& settings) {
   return all;
 }
 
-// All camera paths may end early.
+// Counts with which all camera paths may end early.
 TechniqueCounts Ending() {
   TechniqueCounts counts;
   counts.continuing = FilmMask(1, 1, Point2(1.0f), {static_cast<float>(kContinuing)});
@@ -146,7 +146,7 @@ struct Passes {
   void TraceOne(uint32_t pass, Counted& sum);
 };
 
-// Adds what the pass does to `sum`.
+// Traces a pass and adds its counts to `sum`.
 void Passes::TraceOne(uint32_t pass, Counted& sum) {
   tracer.TracePhotons(*integrators.vcm, store, pass);
   const PhotonPass& gather = store.Open(pass, threads, wider);
@@ -162,8 +162,8 @@ void Passes::TraceOne(uint32_t pass, Counted& sum) {
   if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
 }
 
-// Traces the passes that are recorded, and counts what they do. `isEnough`: asked after `first` passes and each
-// doubling, with their number and the counts of a pass. Returns the number of passes.
+// Traces the recorded passes and sums their counts. `isEnough`: called after `first` passes and each doubling, with
+// their number and the counts of a pass. Returns the number of passes.
 int RunPasses(int first, int most, const std::function<bool(int, const Counted&)>& isEnough, Passes& passes) {
   const auto ofOne = [](Counted sum, int count) {
     const auto n = static_cast<uint64_t>(count);
@@ -200,8 +200,8 @@ void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& phot
   counted.bdpt = counted.vcm = guided.Trace(*integrators.vcm, 0, &gather);
   counted.endingBdpt = counted.endingVcm = guided.Trace(*integrators.endingVcm, 0, &gather);
   store.EndGathering();
-  // The guide's density at every emission that is weighted, which no count tells. Measured in scenes/pool and mirror
-  // and a room with a window pane, 160×90: a sample takes 1.10 to 1.26 times the counted time.
+  // The cost of the guide's density at every emission that is weighted, which no count includes. Measured in
+  // scenes/pool and mirror and a room with a window pane, 160×90: a sample takes 1.10 to 1.26 times the counted time.
   constexpr double kDensities = 1.15;
   const auto ofGuided = CostsOf(counted, pixels);
   for (size_t k = 0; k < kCandidates; ++k)
@@ -252,7 +252,7 @@ Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& pat
 struct ErrorsOfOneLight {
   std::vector<double> path, bdpt, vcm, endingBdpt, endingVcm;
 
-  // `passes`: that were recorded.
+  // `passes`: number of recorded passes.
   ErrorsOfOneLight(const Spreads& spreads, const Records& records, int passes) {
     const auto of = [&records](const std::vector<LightSpread>& spread, uint32_t samples) {
       std::vector<double> squares;
@@ -278,8 +278,8 @@ struct ErrorsOfOneLight {
   }
 };
 
-// Turns the candidates, which chose several lights at a vertex, to ones that choose one, and adds those with several
-// again that have less error in equal time than any with one.
+// Converts the candidates from several lights at a vertex to one, and adds again those with several that have less
+// error in equal time than any with one.
 void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Records& records, int pixels, int passes,
                         RenderPilot& pilot) {
   const ErrorsOfOneLight errors(spreads, records, passes);

@@ -22,8 +22,9 @@ struct Candidate {
 };
 // Merges of a pass that starts wide, over those of one that does not: the mean over the first 64 passes.
 inline constexpr double kWiderMerging = 3.4;
-// Of camera paths that may end early: the part that continues. Measured with 1/4 and 1/16 in six scenes by bdpt and
-// vcm: 1/4 has less error in equal time in most of them, because what only long camera paths find is noisy with 1/16.
+// The fraction of camera paths that continue, of those that may end early. Measured with 1/4 and 1/16 in six scenes by
+// bdpt and vcm: 1/4 has less error in equal time in most of them, because what only long camera paths find is noisy
+// with 1/16.
 inline constexpr double kContinuing = 0.25;
 constexpr Candidate Bidirectional(bool merges, int log2LightPaths, bool startsWide = false, double continuing = 1) {
   const double n = log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths;

@@ -36,8 +36,8 @@ class PilotPasses {
 
   // Traces the photons of a pass; where the integrator gathers none, it has none.
   PassCounts TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass);
-  // One sample of every pixel. Passes 2i and 2i + 1 have the same pixel of the image, of those that a pixel of the
-  // pilot holds: what differs between pixels is not noise, and what is within one is.
+  // One sample of every pixel. A pixel of the pilot covers several pixels of the image, of which passes 2i and 2i + 1
+  // sample the same one: differences between pixels of the image are not noise.
   PassCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather, const Noted& noted = {});
 
  private:
@@ -58,7 +58,7 @@ class PilotPasses {
 std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings,
                                  double fewer, const TechniqueCounts* counts = nullptr);
 
-// The settings of an integrator's photons with as many fewer light paths, if their number is set.
+// The photon settings of an integrator; the number of light paths, if it is set, is divided by `fewer`.
 PhotonSettings PhotonsOfPilot(const Integrator& integrator, double fewer);
 
 // Radius of the pilot's merging, in radii of the first pass of a render. The pilot has fewer light paths by the factor

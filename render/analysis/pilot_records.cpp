@@ -10,7 +10,7 @@ namespace lampyr::pilot {
 
 namespace {
 
-// A candidate finds it less often than the pilot by this factor.
+// An event is rare if a candidate finds it less often than the pilot by this factor.
 constexpr double kRare = 16;
 
 // So many of a candidate's events are kept in each chunk.
@@ -29,8 +29,8 @@ double GainOfSobol(double error) {
   return error > 0 ? std::clamp(1.6 * std::pow(error, -0.25), 1.0, 3.0) : 1.0;
 }
 
-// The least variance that is told apart, in parts of the squared mean, for n samples: second moment and mean are both
-// estimated from them. Candidates with less are equally good, and the cheapest of them is chosen.
+// The least distinguishable variance, relative to the squared mean, for n samples: second moment and mean are both
+// estimated from them. Candidates with less variance are equally good, and the cheapest of them is chosen.
 double LeastVariance(double samples) {
   return 2.2 / std::sqrt(samples);
 }
@@ -368,7 +368,7 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
     // Variance of the tile's sum, from the spread of its pixels.
     double& variance = candidate.tileVariances[tile];
     const int n = grid_.PixelsOf(tile);
-    if (n > 1) {  // else nothing tells it, and it is taken for as large as the error
+    if (n > 1) {  // else it is unknown, and is taken to be as large as the error
       variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;
       variance = std::max(variance * n / (n - 1), 0.0);
     }

@@ -1,4 +1,4 @@
-// What the pilot sees, and the errors of the candidates that follow from it.
+// Records of the pilot's samples, and the errors of the candidates estimated from them.
 #pragma once
 
 #include <algorithm>
@@ -64,7 +64,7 @@ inline int BeginOfChunk(int count, int chunk, int chunks) {
   return static_cast<int>(int64_t{count} * chunk / chunks);
 }
 
-// Light that a candidate finds rarely, and bright.
+// A rare and bright contribution, as a candidate finds it.
 struct RareEvent {
   size_t pixel;
   double value;     // of one occurrence
@@ -72,8 +72,8 @@ struct RareEvent {
   double light;     // what it adds to the mean of the pixel, summed over the pilot's samples
   double square;    // to its second moment
 };
-// Samples of a typical render. Events that it is expected to hold less than once are not in a candidate's error, but
-// light that it does not find.
+// Samples of a typical render. Events that it is expected to hold less than once are left out of a candidate's error
+// and count as missing light.
 inline constexpr double kTypicalSamples = 1 << 21;
 
 // Sums over the samples of a pixel.
@@ -97,12 +97,12 @@ struct Found {
 struct SquaredMean {
   double value = 0, oftener = 0, connected = 0;  // of the sums of Found
   // `secondMoment`: the pixel's, summed over the passes. No mean is larger. A product of two samples may be: where
-  // camera paths find light rarely, and splats often, the second moment is known from the many splats, and two rare
-  // samples that are both there are worth far more than that. What is found often has no such samples, and is left as
-  // it is: a bound by a noisy moment would take away from it.
+  // camera paths find light rarely and splats find it often, the second moment is known from the many splats, and the
+  // product of two rare samples exceeds it by far. Light that camera paths find often (`oftener`) has no such samples
+  // and is not limited: the bound is noisy and would make it too small.
   double Below(double secondMoment) const { return std::min(value, std::max(oftener, secondMoment)); }
-  // What is no noise where samples take turns: `connections` of them have a light path, and those have another mean
-  // than the rest. `squaredMean`: of the pixel.
+  // The part of the variance that is no noise because samples take turns: the fraction `connections` of them has a
+  // light path, and its mean differs from that of the rest. `squaredMean`: of the pixel.
   double OfTurns(double connections, double squaredMean) const {
     if (!(connections > 0) || connections >= 1) return 0;
     return (1 / connections - 1) * std::clamp(connected, 0.0, std::max(squaredMean, 0.0));
@@ -170,7 +170,7 @@ class Recorder final : public PathObserver {
   void Add(const ConnectedPath& path, double value);
   void AddSplat(const ConnectedPath& path, double value, size_t pixel);
   void Add(const Splat& splat);
-  // A path of which it is not known how else it could be found: as if all candidates did it like this.
+  // Adds a path whose densities by other techniques are unknown, as if all candidates found it in the same way.
   void AddAlike(const ConnectedPath& path, double value);
   void KeepRare(const ConnectedPath& path, double value, size_t pixel, const PerCandidate& factors);
 
@@ -217,8 +217,8 @@ class Records {
   // The errors of tiles, as PilotCandidate::tileErrors but by independent samples, of squared errors by pixel. After
   // SetErrors.
   std::vector<double> RelativeErrors(const std::vector<double>& squares) const;
-  // After SetErrors: the error that is told apart; light of a pixel, on average, and that of it which is not seen
-  // itself.
+  // After SetErrors: the least error that is distinguishable; the mean light of a pixel, and its part that is not seen
+  // directly.
   double LeastError() const { return least_; }
   double MeanLight() const { return meanLight_; }
   double MeanUnseen() const { return meanUnseen_; }
@@ -245,7 +245,7 @@ class Records {
   void LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,
                     std::vector<Moments>& pixels) const;
   // The thousandth of the pixels in which even the best candidate is noisiest, marked by 1: a firefly there, which all
-  // candidates have, would hide what they differ by elsewhere.
+  // candidates have, would hide their differences elsewhere.
   std::vector<char> Hopeless(const std::vector<Moments>& pixels, const std::vector<double>& scales) const;
   template <class Body>
   void ForEachPixel(const Body& body) const {

@@ -82,8 +82,8 @@ class Measured {
     for (const std::vector<double>& pair : pairs_) sum += Sum(pair);
     return sum / Pairs();
   }
-  // Standard error of Error(), from the spread of pairs: pixels share photons, so their spread does not tell it. Of one
-  // pair it is not known.
+  // Standard error of Error(), from the spread of pairs: pixels share photons, so that their spread does not give it.
+  // Unknown for a single pair.
   double StandardError() const {
     if (pairs_.size() < 2) return Error();
     const double mean = Error();

@@ -51,9 +51,10 @@ class EditableScene {
   RgbColorSpace ColorSpaceOf(size_t statement) const;
 
   // Replaces parameters of statements, by Light::Edit of each of their lights. The new scene is that of a file with
-  // these parameters, and of no table of the one before: selection, emission, linking, the choice of "auto" are made
-  // again; so are the shapes if the edit may concern them, as that of a light with a surface of its own does unless all
-  // lights have the parameter. Throws a located Error for a mistake, and leaves all as it was.
+  // these parameters. It keeps no table of the lights of the scene before: selection, emission, linking and the choice
+  // of "auto" are made again. So are the shapes if the edit may change them: cameraVisible of a light with a surface,
+  // and any parameter of a light with a surface of its own that not all lights have. Throws a located Error for a
+  // mistake, and leaves all as it was.
   void Edit(const std::vector<StatementEdit>& changes);
   // Sets a parameter to what the scene has, its value or none. Builds the scene anew.
   void Reset(size_t statement, const std::string& parameter);

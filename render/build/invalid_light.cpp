@@ -62,7 +62,7 @@ std::optional<InvalidLight> FindInvalidLight(const BuiltScene& built) {
       const Receiver& receiver = receivers[k % receivers.size()];
       const Point2 u = rng.NextPoint2();
       if (!SendsInvalid(lighting, receiver, light, u)) continue;
-      // Light is not filtered for Receiver::kCamera: this tells the light from its filter.
+      // Light is not filtered for Receiver::kCamera, which distinguishes a fault of the light from one of its filter.
       Receiver unfiltered = receiver;
       unfiltered.link = Receiver::kCamera;
       if (lights[light].filter < 0 || SendsInvalid(lighting, unfiltered, light, u)) return ofLight(light);

@@ -16,7 +16,7 @@
 
 namespace lampyr {
 
-// What a light was made of besides its parameters.
+// The data that a light was made from, besides its parameters.
 struct KeptContext {
   LightBuildContext build;  // its `shape` is the one below
   std::shared_ptr<const Shape> shape;

@@ -144,8 +144,8 @@ Transform Builder::ChooseRenderSpace() const {
     const Placement& placement = entry.local.description->placement;
     Bounds3d ofShape = GetBounds(entry.local, startToWorld * placement.start);
     const bool moves = placement.IsAnimated() || !(startToWorld == endToWorld);
-    // Told here: where the render space is shifted to it, other things would seem to be far away. Motions are told
-    // later.
+    // Reported here: once render space is shifted to this shape, all other things would seem to be far away. Motions
+    // are reported later.
     if (const Point3d center = ofShape.Center(); !moves && glm::length(center) > static_cast<double>(kFarthest))
       throw Error(entry.local.description->shape.where, "a shape is placed farther out than 1e18");
     if (moves) ofShape.Add(GetBounds(entry.local, endToWorld * placement.end));
@@ -494,7 +494,7 @@ BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
                       std::vector<SceneLight>& lights, const TypeRegistry& types) {
   RenderOverrides overrides;
-  overrides.integrator = "path";  // nothing is rendered: a pilot would be for nothing
+  overrides.integrator = "path";  // nothing is rendered: no pilot is needed
   Builder builder(description, overrides, robust, diagnostics, types);
   builder.DescribeLightsIn(&lights);
   return builder.Build();

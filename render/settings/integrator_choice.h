@@ -8,7 +8,8 @@
 
 namespace lampyr {
 
-// Samples of a pixel that a splat is worth, in the weights of bidirectional techniques.
+// Sample count of splats in the weights of bidirectional techniques: PixelFilter::SplatCount over the gain of camera
+// samples by Sobol points.
 double SplatCount(const RenderSettings& settings);
 
 // The integrator of the settings, for `scene`. Throws a UsageError if it cannot render the scene.

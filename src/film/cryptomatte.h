@@ -1,5 +1,5 @@
-// Cryptomatte ([Friedman15]; version 1.2.0 of its specification): who covers how much of each pixel, for masks of
-// single objects and materials in compositing.
+// Cryptomatte ([Friedman15]; version 1.2.0 of its specification): the coverage of each pixel by objects or materials,
+// for masks in compositing.
 #pragma once
 
 #include <map>

@@ -34,14 +34,16 @@
 namespace lampyr {
 
 // The layer of a film that gets the samples of about half of the indices, instead of a part of each sample. It is the
-// last one. Two estimates with independent noise, it and the rest, tell the noise of whatever is made of the picture.
+// last one. This layer and the rest are two estimates with independent noise, from which the noise of any processed
+// picture is estimated.
 inline constexpr const char* kHalfLayer = "half";
-// Whether a sample belongs to it: the first half of those from any power of two to the next does. Aligned blocks of a
-// Sobol sequence are well distributed each on its own; two parts that are so only together have opposite errors.
+// True if a sample belongs to kHalfLayer: the first half of the indices from each power of two to the next. Aligned
+// blocks of a Sobol sequence are well distributed each on its own; two parts that are so only together have opposite
+// errors.
 inline bool IsInHalf(uint32_t sampleIndex) {
   return sampleIndex < 2 ? sampleIndex == 0 : (sampleIndex & (std::bit_floor(sampleIndex) / 2)) == 0;
 }
-// How many of the first n samples do: from n/2 to n·2/3, rounded up.
+// Number of the first n samples that belong to kHalfLayer: from n/2 to n·2/3, rounded up.
 uint32_t SamplesInHalf(uint32_t n);
 
 // The share of the samples that are in kHalfLayer, where they are not the first ones of the picture: a key of
@@ -61,7 +63,7 @@ struct SpectralBands {
   double from = 0, to = 0;
 
   double Width() const { return (to - from) / count; }
-  // That of a wavelength; -1: none.
+  // Index of the band of a wavelength; -1: none.
   int Of(double wavelength) const;
   bool operator==(const SpectralBands&) const = default;
 };
@@ -117,8 +119,8 @@ struct PixelStages {
   bool IsFinite() const;
 };
 
-// Of samples of an adaptive film that are not independent, because all those of a pass gather the same photons: what
-// differs between the samples of a pass and what is common to them.
+// Statistics of samples of an adaptive film that are correlated, because all those of a pass gather the same photons:
+// the variation within passes, and the sizes of passes.
 struct PixelGroups {
   double within[3] = {0, 0, 0};  // Σ squared deviations of samples from the mean of their pass
   uint64_t freedom = 0;          // degrees of freedom of `within`
@@ -219,7 +221,7 @@ class Film {
   // Estimate of the bias of a pixel (an index into the crop, row by row), 0 unless estimates are kept. Signed.
   double Bias(size_t pixel, int channel) const;
 
-  // What the stages that have ended tell: passes, and of a pixel (an index into the crop, row by row) its stages, its
+  // Statistics of the ended stages: passes, and of a pixel (an index into the crop, row by row) its stages, its
   // luminance, the sums of squared deviations of the luminance of its samples and of their squares, and the variance of
   // all splats.
   uint64_t EndedPasses() const { return endedPasses_; }
@@ -267,8 +269,8 @@ class Film {
   double RelativeError(double largestSample = 0) const { return PartsOfError(largestSample).Both(); }
 
   // Half the width of the 95 % interval of a pixel's luminance, relative to it, or to 1 % of the mean luminance in
-  // darker pixels; pixel by pixel, row by row. With the bias. Infinite where fewer than 2 samples do not tell, and,
-  // while `imageError`, the relative error of the whole picture, is above 1, where all samples were black.
+  // darker pixels; pixel by pixel, row by row. With the bias. Infinite where there are fewer than 2 samples, and, while
+  // `imageError`, the relative error of the whole picture, is above 1, where all samples were black.
   std::vector<float> PixelErrors(double imageError = 0) const;
   // Squared bound of the bias of the luminance, pixel by pixel, each from its neighbourhood; empty unless estimates are
   // kept.

@@ -4,9 +4,10 @@
 // bias is therefore estimated by B² less the variance of B, which is unbiased; pixel by pixel it may be negative, and
 // is then taken to be 0 in the mean over many pixels.
 //
-// B is the bias where it goes with the square of the radius, in regions of smooth light. At the edges of light and of
-// surfaces it goes with the radius itself, and the difference of the estimates at r and r / √2, of which B is 2, is to
-// be taken 1 / (1 - 1 / √2) times. As nobody knows which pixels have edges, the bound takes it so everywhere.
+// B is the bias where that is proportional to the square of the radius, in regions of smooth light. At the edges of
+// light and of surfaces the bias is proportional to the radius itself, and the difference of the estimates at r and r /
+// √2, of which B is 2, has to be multiplied by 1 / (1 - 1 / √2). The pixels with edges are not known, so the bound uses
+// this factor everywhere.
 #include <algorithm>
 #include <cmath>
 

@@ -50,8 +50,8 @@ void AppendChannels(Image& image, const Image& more);
 // The channels of those names, with the window of the image; an image without channels if it does not have all of them.
 Image ChannelsOf(const Image& image, const std::vector<std::string>& names);
 
-// Half: of the layers that it can hold. In float are those with a finite value beyond its range, and identifiers,
-// variances and errors.
+// Half applies to layers whose values it can hold. Layers with a finite value beyond its range, identifiers, variances
+// and errors are written as float.
 enum class ExrPrecision { Half, Float };
 
 // Writes an OpenEXR file atomically (AtomicFile). Throws an Error (unwritable folder, full disk). `append`, if given,

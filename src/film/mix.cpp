@@ -79,7 +79,7 @@ bool IsGray(const Color& factor) {
   return factor.r == factor.g && factor.g == factor.b;
 }
 
-// The channels that `isKept`.
+// The channels for which `isKept` is true.
 Image Kept(const Image& image, const std::function<bool(const std::string&)>& isKept) {
   std::vector<std::string> kept;
   for (const std::string& channel : image.channels) {
@@ -90,7 +90,7 @@ Image Kept(const Image& image, const std::function<bool(const std::string&)>& is
   return result;
 }
 
-// Channels that are true of the light as it was alone: halves of the samples, the picture before denoising, strategies
+// Channels that are valid for the unmixed light alone: halves of the samples, the picture before denoising, strategies
 // and errors.
 bool IsOfParts(const std::string& channel) {
   for (const char* prefix :
@@ -100,7 +100,7 @@ bool IsOfParts(const std::string& channel) {
   return false;
 }
 
-// Without what is not known of a picture of which some layers alone have changed, and without layers besides `known`.
+// Drops the channels that are unknown once some layers alone have changed, and all layers besides `known`.
 Image WithoutUnknown(const Image& image, const std::vector<std::string>& known) {
   const std::vector<std::string> layers = ColorLayers(image);
   const auto isIn = [](const std::vector<std::string>& names, const std::string& name) {
@@ -184,7 +184,7 @@ std::vector<std::string> GroupLayers(const Image& image) {
 
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   Check(image, factors);
-  // Of a denoised picture the groups are those of the noisy one: their sum is not the picture.
+  // The groups of a denoised picture are those of the noisy one: their sum is not the picture.
   const bool isDenoised = image.ChannelIndex("noisy.R") >= 0;
   const std::vector<std::string> groups = isDenoised ? std::vector<std::string>() : GroupLayers(image);
   const auto isGroup = [&](const std::string& layer) {

@@ -1,7 +1,6 @@
-// The plan of what a render leaves behind besides its picture: layers, each the light of the paths that match an
-// expression (path_expression.h). All expressions are compiled to one automaton before the first ray. A camera subpath
-// carries its state, a light subpath or a photon that of the reverse automaton; the pair of both is looked up where
-// they meet.
+// The plan of a render's layers: each holds the light of the paths that match an expression (path_expression.h). All
+// expressions are compiled to one automaton before the first ray. A camera subpath carries its state, a light subpath
+// or a photon that of the reverse automaton; the pair of both is looked up where they meet.
 #pragma once
 
 #include <array>

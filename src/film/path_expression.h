@@ -30,7 +30,7 @@ enum class PathEvent : uint8_t {
 };
 inline constexpr size_t kPathEvents = 7;
 
-// What expressions know of a source of light.
+// The properties of a light source that expressions can name.
 struct LightSourceName {
   std::string name, group;
   bool isMedium = false;  // a participating medium that glows
@@ -91,7 +91,7 @@ struct NamedExpression {
   const char* text;
 };
 const std::vector<NamedExpression>& NamedExpressions();
-// Null: none of that name.
+// The expression of that name; null: there is none.
 const NamedExpression* FindNamedExpression(const std::string& name);
 
 }  // namespace lampyr

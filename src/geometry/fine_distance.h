@@ -11,7 +11,7 @@ namespace lampyr {
 
 // Parameter at which the line meets the surface of a hit or crossing that was found near `about`; `about` itself where
 // there is no better one: curves, custom surfaces, lines that only touch. Only primitive, patch and instance of `hit`
-// are looked at.
+// are read.
 double FineDistance(const SceneTables& tables, const FineLine& line, float time, const RayHit& hit, double about);
 
 // Sets the distances of crossings that a ray has found, whose origin is `ahead` in front of the start of the line, and

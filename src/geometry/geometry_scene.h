@@ -1,5 +1,5 @@
-// The traceable scene: shapes and instances in, nearest hits and occlusion out. Embree, and what takes its place where
-// surfaces are few, behind a door: only geometry_scene.cpp (and its private parts) includes Embree's headers.
+// The traceable scene: shapes and instances in, nearest hits and occlusion out. Hides Embree, and FewSurfaces, which
+// replaces it in small scenes: only geometry_scene.cpp (and its private parts) includes Embree's headers.
 #pragma once
 
 #include <memory>
@@ -46,11 +46,12 @@ struct GeometryAttributes {
   std::shared_ptr<const ThinSurface> thin;   // null: no light goes straight on through the surface
   // Participating media inside and outside (the side of Ng); both are kSameMedium where the surface separates none.
   int32_t insideMedium = kSameMedium, outsideMedium = kSameMedium;
-  // Between media alone: rays of all kinds pass straight through. A surface that separates media and is not visible to
-  // all kinds is that to the others. Where `alpha` is 0 there is no boundary. No curves and no custom surfaces.
+  // Between media alone: rays of all kinds pass straight through. A surface that separates media is a boundary for the
+  // kinds of rays to which it is not visible. Where `alpha` is 0 there is no boundary. No curves and no custom
+  // surfaces.
   bool isBoundary = false;
-  bool isOpaque = false;  // no path goes through: what its sides say of media does not bound them
-  // False: nobody looks at the uv and tangents of its points, and they are left at 0 where they cost something.
+  bool isOpaque = false;  // no path goes through: the media of its sides do not bound media
+  // False: uv and tangents of its points are not used, and are left at 0 where computing them costs time.
   bool isParametrized = true;
   int32_t object = -1;     // index of its name, where names are wanted
   bool isFibrous = false;  // a curve that is met from outside alone: its inside is a part of its scattering
@@ -159,7 +160,7 @@ class GeometryScene {
   // False: surfaces are few, and none is a curve or an instance (FewSurfaces).
   bool IsTracedByEmbree() const;
   MediumSurfaces SurfacesOf(int32_t medium) const;
-  // Those of all media, by index, in one pass over the surfaces.
+  // MediumSurfaces of all media, by index, in one pass over the surfaces.
   std::vector<MediumSurfaces> SurfacesOfAll(size_t media) const;
   // Boxes of the surfaces that separate media and let light pass, over the shutter.
   std::vector<Bounds3> BoundaryBoxes() const;

@@ -30,17 +30,17 @@ struct FoundMedium {
   bool isUnanimous = false;       // all rays say the same, what stops light included
   bool isOfBoundary = false;      // a boundary says it, not only what stops light
   bool isOfOpaque = false;        // nothing but opaque surfaces says it
-  // The medium that all rays end in which nothing stops, or all rays if each is stopped. One that meets no change ends
-  // in `medium`. nullopt: they end in several, or none of them meets one.
+  // The medium in which all rays end that nothing stops; if each ray is stopped, in which all rays end. A ray that
+  // meets no change ends in `medium`. nullopt: rays end in several media, or none meets a change.
   std::optional<int32_t> exterior;
   // A primitive whose side contradicts another one, kNoIndex for none: boundaries overlap or are open.
   uint32_t disputed = kNoIndex;
 };
 
-// The medium at a point of render space at a shutter time, by three rays in fixed directions. Each says what the first
-// surface that separates media has on the side that the ray meets; a ray that meets none says nothing. What most rays
-// say holds and, if all say something else, what the first one says. Surfaces that stop light are asked only where no
-// ray meets a boundary before them.
+// The medium at a point of render space at a shutter time, by three rays in fixed directions. Each ray votes for the
+// medium on the near side of the first surface on it that separates media; a ray that meets none does not vote. The
+// majority decides; if all votes differ, the first one does. Surfaces that stop light count only where no ray meets a
+// boundary before them.
 //
 // With a `normal` other than 0 the rays leave to its side, for points on a surface.
 FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time,

@@ -1,6 +1,6 @@
-// Private to the geometry: what becomes of a ray that meets a surface. The intersections that are ours (quadrics,
-// bilinear patches, custom surfaces), and whether the ray is stopped. Both tracers ask: Embree by its callbacks, and
-// FewSurfaces.
+// Private to the geometry: intersection of the surfaces that Embree does not intersect itself (quadrics, bilinear
+// patches, custom surfaces), and the decision whether a surface stops a ray. Used by both tracers: Embree, through its
+// callbacks, and FewSurfaces.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -39,8 +39,8 @@ struct Meeting {
   uint32_t side = 0;                       // 0 and 1: the hits on one primitive, such as entering and leaving a sphere
 };
 
-// True if the ray goes on behind `hit`. Of Intersect by chance, in proportion; of Transmittance (`isShadow`) as long as
-// something is left.
+// True if the ray goes on behind `hit`. Intersect decides at random, in proportion to the transmittance; Transmittance
+// (`isShadow`) goes on as long as any light is left.
 bool PassesThrough(const Meeting& at, const RTCRay& ray, const RayHit& hit, TraceContext& trace, bool isShadow);
 
 // Shortens the ray to the nearest hit that stops it, on a quadric, patch or custom surface, and records that hit.

@@ -37,7 +37,7 @@ inline constexpr float kNearestHit = 1e-25f;
 
 inline constexpr uint32_t kNoIndex = 0xffffffffu;
 
-// Indices of participating media (RenderScene::media) that are none.
+// Special values of an index of participating media (RenderScene::media).
 inline constexpr int32_t kVacuum = -1;
 inline constexpr int32_t kSameMedium = -2;  // of a surface's side: the medium that the path is in
 
