@@ -59,8 +59,8 @@ namespace {
 
 // Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
 constexpr double kRadiusInPixels = 1;
-// Bounds of the merging radius, in radii of the scene: below the rounding of positions it finds no photon, beyond the
-// scene all of them.
+// Bounds of the merging radius, in radii of the scene. Below the rounding of positions photons are found where they are
+// not, and nothing is merged; a wider radius would be a blur that never vanishes. Beyond the scene all are found.
 constexpr double kLeastRadius = 1e-7, kMostRadius = 2;
 
 }  // namespace
@@ -70,7 +70,7 @@ float BidirectionalSample::MergeRadiusAt(double footprint) const {
   if (settings.photons.radius > 0) return pass.radius;
   const auto size = static_cast<double>(Lighting().SceneSphere().radius);
   const double radius = kRadiusInPixels * std::sqrt(footprint) * static_cast<double>(pass.radiusScale);
-  return static_cast<float>(std::clamp(radius, kLeastRadius * size, kMostRadius * size));
+  return radius < kLeastRadius * size ? 0.0f : static_cast<float>(std::min(radius, kMostRadius * size));
 }
 
 Merging BidirectionalSample::MergingAt(double distance, double footprint, const Point2& film) const {
@@ -78,8 +78,10 @@ Merging BidirectionalSample::MergingAt(double distance, double footprint, const 
   if (!(probability > 0)) return {};
   // Parallel rays have no angle: they take the distance at which a field of view of 53 degrees is as wide as the image.
   if (context.scene.camera->ConnectsByDirection()) distance = std::sqrt(footprint * settings.filmPixels);
-  return Merging::At(static_cast<double>(MergeRadiusAt(footprint)), distance, context.gather->lightPaths, lightPaths,
-                     settings.filmPixels, probability, static_cast<double>(context.gather->radiusScale));
+  const auto radius = static_cast<double>(MergeRadiusAt(footprint));
+  if (!(radius > 0)) return {};
+  return Merging::At(radius, distance, context.gather->lightPaths, lightPaths, settings.filmPixels, probability,
+                     static_cast<double>(context.gather->radiusScale));
 }
 
 AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTerm, double distanceSquared) {
@@ -173,6 +175,9 @@ class CameraSide final : public PathVisitor {
       sample_.radiance +=
           path.Count() == 0 ? SeeLightAt(sample_, state, hit, point) : HitLightAt(sample_, state, point);
     }
+    // Beyond the first wide scattering the radius is known before the vertex is made.
+    if (state.hasScatteredWidely && sample_.merging && sample_.isMerged)
+      sample_.context.gather->map->PrefetchCells(point.position, sample_.mergeRadius);
     return true;
   }
 

@@ -60,7 +60,7 @@ struct BidirectionalSample {
   // event than a delta: all techniques of a path share it, and before it nothing can be merged.
   // `film`: where it is on the film.
   Merging MergingAt(double distance, double footprint, const Point2& film) const;
-  float MergeRadiusAt(double footprint) const;
+  float MergeRadiusAt(double footprint) const;  // 0: nothing is merged
   // Connections for each light path in a pixel.
   double ConnectionsPerLightPathAt(const Point2& film) const {
     return settings.connects ? settings.counts.ConnectionsPerLightPath(film) : 0.0;

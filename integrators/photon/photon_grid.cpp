@@ -12,8 +12,8 @@ namespace {
 // Photons per occupied cell at least, and up to four times as many on surfaces. Lookups of the integrators find 0
 // to 10.
 constexpr size_t kPerCell = 4;
-// Above either, FLANN's tree is about as fast.
-constexpr uint32_t kMostCells = 27, kMostPhotons = 160;
+// Above, or above kMostCells, FLANN's tree is about as fast.
+constexpr uint32_t kMostPhotons = 160;
 
 // Number of occupied cells at each resolution: element b is for 2^b cells per axis.
 std::array<size_t, MortonFrame::kBits + 1> CountOccupied(std::span<const SortItem> sorted) {
@@ -62,8 +62,7 @@ PhotonGrid::Slot PhotonGrid::Lookup(uint32_t cell) const {
   return slots_[at];
 }
 
-bool PhotonGrid::Find(const Point3& center, float radius, std::vector<uint32_t>& found,
-                      std::vector<float>& distances) const {
+uint32_t PhotonGrid::FetchCells(const Point3& center, float radius, std::array<uint32_t, kMostCells>& cells) const {
   // Rounding must not leave out a cell with a photon on the rim. Sums are rounded monotonically, as cells are.
   const float reach = radius * 1.00001f;
   std::array<uint32_t, 3> first, last;
@@ -74,23 +73,35 @@ bool PhotonGrid::Find(const Point3& center, float radius, std::vector<uint32_t>&
     last[a] = frame_.CellOf(center[axis] + reach, axis) >> coarser_;
     count *= last[a] - first[a] + 1;
   }
-  if (count > kMostCells) return false;
-  std::array<uint32_t, kMostCells> cells;
+  if (count > kMostCells) return 0;
   count = 0;
   for (uint32_t z = first[2]; z <= last[2]; ++z) {
     for (uint32_t y = first[1]; y <= last[1]; ++y) {
       for (uint32_t x = first[0]; x <= last[0]; ++x) {
         cells[count] = MortonCode(x, y, z);
-        Prefetch(&slots_[SlotOf(cells[count++])]);
+        lampyr::Prefetch(&slots_[SlotOf(cells[count++])]);
       }
     }
   }
+  return count;
+}
+
+void PhotonGrid::Prefetch(const Point3& center, float radius) const {
+  std::array<uint32_t, kMostCells> cells;
+  if (slots_.Size() > 0) FetchCells(center, radius, cells);
+}
+
+bool PhotonGrid::Find(const Point3& center, float radius, std::vector<uint32_t>& found,
+                      std::vector<float>& distances) const {
+  std::array<uint32_t, kMostCells> cells;
+  const uint32_t count = FetchCells(center, radius, cells);
+  if (count == 0) return false;
   std::array<Slot, kMostCells> runs;
   uint32_t occupied = 0, photons = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const Slot slot = Lookup(cells[i]);
     if (slot.count == 0) continue;
-    Prefetch(&positions_[slot.first]);
+    lampyr::Prefetch(&positions_[slot.first]);
     runs[occupied++] = slot;
     photons += slot.count;
   }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,6 +50,9 @@ class PhotonGrid {
   // `sorted`: the cells of the photons in `frame`, in ascending order. `positions`: of the same photons.
   PhotonGrid(const MortonFrame& frame, std::span<const SortItem> sorted, std::vector<Point3> positions);
 
+  // Fetches into the cache the cells that Find reads first, while other work goes on.
+  void Prefetch(const Point3& center, float radius) const;
+
   // Sets `found` to the indices of all photons nearer than `radius` (scene units), and `distances` to the squares of
   // their distances. False, without a result, if a tree is likely to be faster: where the radius spans many cells, or
   // the cells that it meets hold many photons.
@@ -61,6 +65,9 @@ class PhotonGrid {
   struct Slot {
     uint32_t cell, first, count;  // count 0: empty
   };
+  static constexpr uint32_t kMostCells = 27;  // of a lookup
+  // The cells within `radius`, whose slots are fetched into the cache. Returns their number; 0: more than kMostCells.
+  uint32_t FetchCells(const Point3& center, float radius, std::array<uint32_t, kMostCells>& cells) const;
   uint32_t SlotOf(uint32_t cell) const { return (cell * 0x9e3779b1u) >> hashShift_; }
   Slot Lookup(uint32_t cell) const;
 

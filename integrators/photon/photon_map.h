@@ -47,6 +47,11 @@ class PhotonMap {
   // until the next lookup. A radius of 0 finds nothing.
   std::span<const uint32_t> Find(const Point3& position, float radius, PhotonLookup& lookup) const;
 
+  // Fetches into the cache what Find reads first, while other work goes on.
+  void PrefetchCells(const Point3& position, float radius) const {
+    if (search_) grid_.Prefetch(position - center_, radius);
+  }
+
   // The photons in media whose balls a ray passes on [0, tMax), in an order that depends on the photons alone. Valid
   // until the next search. [Jensen98]'s photons, seen by beams ([Jarosz08]).
   std::span<const BeamHit> FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/walk/flight_points.h"
 #include "integrators/walk/footprint.h"
 
 namespace lampyr {
@@ -11,9 +12,14 @@ namespace {
 
 // Radius of photons in media in the first pass by default, in pixel footprints.
 constexpr double kVolumeRadiusInPixels = 1;
-// A photon's radius is that of a pixel at this distance behind it, in radii of the scene: contributions of photons near
-// the camera would otherwise be without bound, as 1 / distance².
+// A photon's radius is that of a pixel at this distance behind it, in radii of the media that scatter: contributions of
+// photons near the camera would otherwise be without bound, as 1 / distance². Not of the scene, beside which media may
+// be so small that photons would fall outside of them.
 constexpr double kNearInRadii = 0.25;
+
+BoundingSphere MediaSphereOf(const RenderScene& scene) {
+  return SphereOfMedia(scene, false).value_or(scene.lighting->SceneSphere());
+}
 
 VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
   VolumeRadius volume;
@@ -30,7 +36,7 @@ VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
     volume.constant = width;
   } else {
     volume.perLength = width;
-    volume.constant = width * kNearInRadii * static_cast<double>(input.scene.lighting->SceneSphere().radius);
+    volume.constant = width * kNearInRadii * static_cast<double>(MediaSphereOf(input.scene).radius);
   }
   return volume;
 }
@@ -69,7 +75,7 @@ constexpr double kBeamWidth = 0.5;
 void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
   VolumeRadius& volume = photons.volume;
   const RenderScene& scene = input.scene;
-  const auto radius = static_cast<double>(volume.At(scene.lighting->SceneSphere().center));
+  const auto radius = static_cast<double>(volume.At(MediaSphereOf(scene).center));
   volume.usesBeams.assign(scene.media.size(), 0);
   bool isUsed = false;
   double depth = 0;  // of a flight across the scene

@@ -38,6 +38,22 @@ double EquiangularDensity(double height, double angle, double x) {
 
 }  // namespace
 
+std::optional<BoundingSphere> SphereOfMedia(const RenderScene& scene, bool seenAlone) {
+  Bounds3 box;
+  bool isUnbounded = false, isAny = false;
+  const std::vector<MediumSurfaces> allSurfaces = scene.geometry->SurfacesOfAll(scene.media.size());
+  for (size_t i = 0; i < scene.media.size(); ++i) {
+    const auto index = static_cast<int32_t>(i);
+    if (!scene.media[i]->Scatters() || (seenAlone && !IsSeen(scene, index, allSurfaces[i]))) continue;
+    isAny = true;
+    box.Add(allSurfaces[i].box);
+    isUnbounded = isUnbounded || IsUnbounded(scene, index, allSurfaces[i]);
+  }
+  if (!isAny) return std::nullopt;
+  if (isUnbounded) return scene.lighting->SceneSphere();
+  return BoundingSphere{box.Center(), static_cast<float>(0.5 * glm::length(Vector3d(box.Diagonal())))};
+}
+
 std::shared_ptr<const FlightPoints> FlightPoints::Of(const RenderScene& scene) {
   if (scene.media.empty()) return nullptr;
   const std::optional<CameraView> view = scene.camera->ConnectsLightPaths() ? scene.camera->View() : std::nullopt;
@@ -45,24 +61,16 @@ std::shared_ptr<const FlightPoints> FlightPoints::Of(const RenderScene& scene) {
   std::shared_ptr<FlightPoints> points(new FlightPoints);
   points->place_ = Point3d(view->place);
   for (const Vector3& plane : view->planes) points->planes_.emplace_back(plane);
-  Bounds3 box;
-  bool isUnbounded = false, isAny = false;
+  const std::optional<BoundingSphere> sphere = SphereOfMedia(scene, true);
+  if (!sphere) return nullptr;
+  points->center_ = Point3d(sphere->center);
+  points->radius_ = static_cast<double>(sphere->radius);
   points->extinctions_.assign(scene.media.size(), -1);
   const std::vector<MediumSurfaces> allSurfaces = scene.geometry->SurfacesOfAll(scene.media.size());
   for (size_t i = 0; i < scene.media.size(); ++i) {
-    const auto index = static_cast<int32_t>(i);
-    if (!scene.media[i]->Scatters()) continue;
-    const MediumSurfaces& surfaces = allSurfaces[i];
-    if (!IsSeen(scene, index, surfaces)) continue;
-    isAny = true;
-    points->extinctions_[i] = MostExtinction(*scene.media[i]);
-    box.Add(surfaces.box);
-    isUnbounded = isUnbounded || IsUnbounded(scene, index, surfaces);
+    if (scene.media[i]->Scatters() && IsSeen(scene, static_cast<int32_t>(i), allSurfaces[i]))
+      points->extinctions_[i] = MostExtinction(*scene.media[i]);
   }
-  if (!isAny) return nullptr;
-  const BoundingSphere& sphere = scene.lighting->SceneSphere();
-  points->center_ = Point3d(isUnbounded ? sphere.center : box.Center());
-  points->radius_ = isUnbounded ? static_cast<double>(sphere.radius) : 0.5 * glm::length(Vector3d(box.Diagonal()));
   return points;
 }
 

@@ -15,6 +15,10 @@
 
 namespace lampyr {
 
+// The sphere around all media that scatter, or around those that the camera may see along straight lines
+// (`seenAlone`); that of the scene if one of them is unbounded. nullopt: there is none.
+std::optional<BoundingSphere> SphereOfMedia(const RenderScene& scene, bool seenAlone);
+
 class FlightPoints {
  public:
   // Null if the camera sees no medium that scatters along straight lines, or if the camera has no single position

@@ -163,6 +163,12 @@ bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint&
   // surfaces.
   const float cosine = glm::dot(point.Ng, toRay);
   if (cosine * glm::dot(emission.normal, toRay) < 0) return false;
+  // A line passes a triangle once. Distances are not compared there: where it is slender, the rounding of barycentric
+  // coordinates moves points along it by much more than their errors.
+  constexpr float kSameNormal = 0.999f;
+  const bool isOnPatch =
+      !scene_->fronts[photon.light].light->Surface() && static_cast<int>(point.patch) == emission.patchIndex;
+  if (isOnPatch && glm::dot(point.Ng, emission.normal) > kSameNormal) return true;
   const float error =
       MaxAbsComponent(point.positionError) + MaxAbsComponent(emission.positionError) + 0x1p-20f * distance;
   return glm::distance(point.position, emission.position) * std::abs(cosine) <= 8 * error;

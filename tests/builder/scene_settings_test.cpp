@@ -80,6 +80,29 @@ TEST(Warnings, AreGivenForWhatIsNotDone) {
   }
 }
 
+TEST(Cameras, WhatASphericalOneCannotDoIsTold) {
+  const auto warningsOf = [](const std::string& text) {
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    BuildScene(ParseScene(text + "\nWorldBegin Shape \"sphere\"", "test.pbrt", diagnostics), {}, true, diagnostics);
+    std::string told;
+    for (const std::string& each : diagnostics.Warnings()) told += each + "\n";
+    return told;
+  };
+  EXPECT_THAT(warningsOf("Camera \"spherical\" \"float lensradius\" 2"),
+              testing::HasSubstr("test.pbrt:1:20: warning: \"lensradius\" has no effect on a spherical camera"));
+  EXPECT_EQ(warningsOf("Camera \"spherical\" \"string mapping\" \"equirectangular\""), "");
+  const std::string wide =
+      "Camera \"spherical\" Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
+      "PixelFilter \"box\" \"float xradius\" ";
+  EXPECT_EQ(warningsOf(wide + "7"), "");
+  try {
+    warningsOf(wide + "8");
+    ADD_FAILURE() << "a filter as wide as all directions";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("test.pbrt:2:1: error: the radius of the filter of a spherical"));
+  }
+}
+
 // Fractions are those of floats, and bounds may be in any order.
 TEST(CropWindow, IsThatOfPbrt) {
   for (const std::string window : {"[0 0.55 0 1]", "[0.55 0 0 1]", "[0.55 0 1 0]"}) {

@@ -52,6 +52,19 @@ Shape "trianglemesh" "point3 P" [-5 0 -5 -5 0 5 5 0 5 5 0 -5] "integer indices" 
   fs::path folder_;
 };
 
+TEST_F(Cli, AnIntegratorThatCannotRenderTheSceneIsToldWhereItIsNamed) {
+  Write("lens.dat", "40 3 1.5 20\n-40 2 1 20\n0 60 0 8\n");
+  Write("lens.pbrt",
+        "Camera \"realistic\" \"string lensfile\" \"lens.dat\"\n"
+        "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
+        "  Integrator \"light\"\nWorldBegin\nShape \"sphere\"\n");
+  const Outcome named = Run("render lens.pbrt -o out.exr --spp 1");
+  EXPECT_EQ(named.exitCode, 1) << named.output;
+  EXPECT_NE(named.output.find("lens.pbrt:3:3: error: integrator light:"), std::string::npos) << named.output;
+  const Outcome asked = Run("render lens.pbrt --integrator light -o out.exr --spp 1");
+  EXPECT_EQ(asked.exitCode, 2) << asked.output;
+}
+
 TEST_F(Cli, RendersAnImageWithMetadataAndStatistics) {
   const Outcome outcome = Run("render scene.pbrt -o out.exr --png --stats stats.json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
