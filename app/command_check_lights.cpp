@@ -86,7 +86,7 @@ std::vector<SuiteResult> CheckTypes(const CheckLightsOptions& options, const Sui
   const ScratchFolder scratch;
   std::vector<SuiteResult> results;
   RunForeignCode(registry, [&] {
-    SuiteOptions silent = suite;  // filters take next to no time where there are lights
+    SuiteOptions silent = suite;  // filters take negligible time beside lights
     if (!types.lights.empty()) {
       results = RunPdfSuite(types.lights, scratch.Path(), suite);
       silent.progress = nullptr;

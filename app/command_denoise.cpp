@@ -60,7 +60,7 @@ int RunDenoise(const DenoiseOptions& options) {
   Image image;
   try {
     image = DenoiseForUser(ReadImage(options.input), threads, FinishOnInterrupt(), options.quiet);
-  } catch (const Error& wrong) {  // what cannot be read or denoised is wrong usage
+  } catch (const Error& wrong) {  // files that cannot be read or denoised are wrong usage
     if (wrong.Text().starts_with("\"") || wrong.Where().file) throw UsageError(wrong.Where(), wrong.Text());
     throw UsageError("\"" + options.input.string() + "\" cannot be denoised: " + wrong.Text());
   }

@@ -35,7 +35,7 @@ void Print(const ImageDifference& difference) {
   }
 }
 
-// Images are compared in one colour space, whatever theirs are.
+// Images are compared in one colour space, whatever their own are.
 Image ReadInRec709(const std::filesystem::path& file) {
   return InRec709(ReadImage(file), WhiteHandling::Adapt, GamutHandling::Keep);
 }
@@ -55,7 +55,7 @@ int RunDiff(const DiffOptions& options) {
     const Image a = ReadInRec709(options.a), b = ReadInRec709(options.b);
     difference = CompareImages(a, b, options.blockSize);
     if (!options.output.empty()) error = DifferenceImage(a, b);
-  } catch (const Error& wrong) {  // what cannot be read or compared is wrong usage
+  } catch (const Error& wrong) {  // images that cannot be read or compared are wrong usage
     throw UsageError(wrong.Where(), wrong.Text());
   }
   if (!options.output.empty()) WriteExr(options.output, error, ExrPrecision::Float);

@@ -82,7 +82,7 @@ void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes 
                "Load the plugins that the scene names (Option \"plugins\"), wherever they lie: they are native code");
 }
 
-// Options that plan, render and compare have in common.
+// Options that plan, render and compare share.
 void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
   app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)")->check(CheckSeed, "");
   app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
@@ -100,7 +100,7 @@ std::string IntegratorChoices() {
   return names + ", or auto: as `lampyr plan` says";
 }
 
-// A PNG beside an image that is written.
+// Options of a PNG that is written beside the image.
 void DefinePngOptions(CLI::App& app, bool& png, float& exposure, bool& clips) {
   app.add_flag("--png", png, "Also write a tone-mapped PNG beside it");
   app.add_option("--exposure", exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
@@ -524,7 +524,7 @@ class Commands {
   // Runs the command that was parsed.
   int Run() {
     const auto parsed = std::find_if(runs_.begin(), runs_.end(), [](const auto& run) { return run.first->parsed(); });
-    // An empty word, as from a shell variable that is not set, would mean the same as no option.
+    // Rejected, because an empty word, as from a shell variable that is not set, would have the effect of no option.
     for (const CLI::Option* option : parsed->first->get_options()) {
       const std::vector<std::string>& words = option->results();
       if (std::find(words.begin(), words.end(), "") != words.end())
@@ -568,7 +568,7 @@ int ParseAndRun(int argc, char** argv) {
   Commands commands(app, argc, argv);
   try {
     std::vector<std::string> words = CommandWords(app, argc, argv);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    std::reverse(words.begin(), words.end());  // the order in which CLI11 takes them
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return ReportParseError(app, error);
@@ -592,7 +592,7 @@ int RunCommandLine(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     ReportMemoryFailure();
     return kExitFailed;
-  } catch (const std::exception& error) {  // of a library or of the system
+  } catch (const std::exception& error) {  // from a library or the system
     std::fprintf(stderr, "error: %s\n", error.what());
     return kExitFailed;
   }

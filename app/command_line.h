@@ -11,7 +11,7 @@ inline constexpr int kExitSignalled = 128;  // and the signal's number
 
 int RunCommandLine(int argc, char** argv);
 
-// Says that there is not enough memory, and what to do. Takes none itself.
+// Reports a lack of memory, and the remedies. Allocates nothing itself.
 void ReportMemoryFailure();
 
 }  // namespace lampyr

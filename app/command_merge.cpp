@@ -93,8 +93,8 @@ void CheckPartsStay(const MergeOptions& options) {
   }
 }
 
-// Adds the layers of those names, which are the same in all parts that have them, to `layers`; not if no part was given
-// the time for them. `what`: they, in words.
+// Adds the layers `names`, which are the same in all parts that have them, to `layers`, unless no part had the time for
+// them. `what`: the layers in words.
 void AddLayersOf(const std::vector<Part>& parts, const PixelRect& crop, const std::vector<std::string>& names,
                  const char* what, bool quiet, Image& layers) {
   for (const Part& part : parts) {
@@ -112,7 +112,7 @@ void AddLayersOf(const std::vector<Part>& parts, const PixelRect& crop, const st
   if (!quiet) std::fprintf(stderr, "warning: no part has %s: the picture is without them\n", what);
 }
 
-// The layers of what is seen first, and the features for denoising; without channels if the picture has none.
+// The first-hit layers, and the features for denoising; without channels if the picture has none.
 Image LayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool quiet) {
   Image layers;
   if (whole.metadata.contains(kFirstHitChannelsMetadata))

@@ -46,7 +46,7 @@ int RunMix(const MixOptions& options) {
     layers = ColorLayers(image);
     mixed = LocateErrors({std::make_shared<const std::string>(options.input.string())},
                          [&] { return MixLayers(image, factors); });
-  } catch (const Error& wrong) {  // what cannot be read, or has no such layer, is wrong usage
+  } catch (const Error& wrong) {  // images that cannot be read or lack the layer are wrong usage
     throw UsageError(wrong.Where(), wrong.Text());
   }
   if (hadVariances && mixed.ChannelIndex("variance.R") < 0 && !options.quiet)

@@ -41,7 +41,7 @@ void PrintPilot(const RenderPilot& pilot, const Settings& values) {
 
 int RunPlan(const PlanOptions& options) {
   if (options.overrides.integrator) CheckIntegratorName(*options.overrides.integrator);
-  // The choice is the plan's own.
+  // The integrator is chosen by the plan itself.
   RenderOverrides overrides = options.overrides;
   overrides.integrator = "path";
   overrides.threads = options.threads;

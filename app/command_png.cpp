@@ -17,7 +17,7 @@ int RunPng(const PngOptions& options) {
   try {
     image = InRec709(ReadImage(options.input), WhiteHandling::Adapt, GamutHandling::Keep);
     if (!image.HasRgb()) throw Error("\"" + options.input.string() + "\" has no R, G and B channels");
-  } catch (const Error& wrong) {  // what cannot be read is wrong usage
+  } catch (const Error& wrong) {  // images that cannot be read are wrong usage
     throw UsageError(wrong.Where(), wrong.Text());
   }
   CheckWritable(output, "--output");

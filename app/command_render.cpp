@@ -43,7 +43,7 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   } else {
     path =
         settings.outputFile.empty() ? options.scene.filename() : std::filesystem::path(settings.outputFile).filename();
-    // Known endings alone are removed: the number of frame.0001 is part of the name.
+    // Only known extensions are removed: the number of frame.0001 is part of the name.
     if (path.extension() == ".gz") path.replace_extension();
     if (path.extension() == ".pbrt" || IsPictureEnding(path.extension().string())) path.replace_extension();
     if (options.shard)
@@ -54,8 +54,7 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   return path;
 }
 
-// Throws a UsageError if two outputs would be one file, or an output file is one of the files that the scene is read
-// from.
+// Throws a UsageError if two outputs would be one file, or an output file is one of the input files of the scene.
 void CheckOutputs(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
   const std::filesystem::path image = OutputPath(options, settings);
   std::vector<std::pair<std::filesystem::path, const char*>> written = {{image, "--output"}};
@@ -86,7 +85,7 @@ void CheckOutputs(const RenderOptions& options, const SceneDescription& scene, c
   }
 }
 
-// An image too large for the machine is told before the system ends the process for it. The film is kept twice
+// Reports an image that is too large for the machine before the system ends the process. The film is kept twice
 // (render_backup.h).
 void CheckMemory(const RenderSettings& settings, const Integrator& integrator, size_t layers, bool denoises) {
   const bool withSplats = integrator.Paths() != TracedPaths::Camera, merges = integrator.Photons().has_value();
@@ -267,7 +266,7 @@ void WriteImage(const std::filesystem::path& path, const RenderOptions& options,
                 const Film& film, const Image& layers, const RenderOutcome& outcome) {
   PartHeader header = ofAll;
   header.samples = static_cast<uint32_t>(outcome.samplesPerPixel);
-  // Without a wanted number of samples, those until a stop by time or error are all.
+  // Without a wanted number of samples, the picture is complete with those until the stop by time or error.
   const bool isOpen = header.shard.whole == kOpenEnd;
   const bool wasCut = outcome.interrupted || outcome.isPartial;
   header.isFinished = header.samples == header.shard.end - header.shard.first || (isOpen && !wasCut);
@@ -315,7 +314,7 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
     throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
                      ": auto decides nothing; --integrator auto lets it decide");
   }
-  if (settings.strategies) StrategiesOf(settings);  // an integrator that has none is told
+  if (settings.strategies) StrategiesOf(settings);  // rejects an integrator without strategies
   if (!options.strategyImages) return;
   if (options.shard)
     throw UsageError("--strategy-images goes without --shard: with --layer strategies the merged picture has them");
@@ -341,7 +340,7 @@ Image AutoLayers(const RenderSettings& settings) {
   return image;
 }
 
-// Layers of strategies are of all techniques, once for each sample.
+// Layers of strategies require all techniques, once for each sample.
 RenderSettings SettingsFor(RenderSettings settings) {
   if (settings.strategies) settings.counts.reset();
   return settings;
@@ -374,7 +373,7 @@ class RenderJob {
   std::unique_ptr<Integrator> integrator_;
   Shard shard_;
   PartHeader header_;
-  Image layers_;  // of what is seen first, of features, and of what auto decided; without channels: none is wanted
+  Image layers_;  // first-hit layers, features, and decisions of auto; without channels if none are wanted
   RenderReport report_;
 };
 
@@ -553,9 +552,10 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   const bool isPartial = report_.outcome.isPartial;
   const std::string partialPicture =
       isPartial ? DescribePartialPicture(options_, film, settings_, integrator_->Paths()) : "";
-  // The sums in a part's image are of whole samples.
+  // The sums in the image of a part require whole samples.
   if (options_.shard) render.DropPartialPass();
-  // Each of the results is written even if another one fails. The first failure ends the command; the others are told.
+  // Each of the results is written even if another one fails. The first failure ends the command; the others are
+  // printed.
   std::exception_ptr failure;
   const auto attempt = [&](const auto& write) {
     try {
@@ -563,7 +563,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
     } catch (const Error& error) {
       if (failure) std::fprintf(stderr, "%s\n", error.what());
       if (!failure) failure = std::current_exception();
-    } catch (const std::exception& error) {  // of a library or of the system
+    } catch (const std::exception& error) {  // from a library or the system
       if (failure) std::fprintf(stderr, "error: %s\n", error.what());
       if (!failure) failure = std::current_exception();
     }

@@ -1,4 +1,4 @@
-// Signals, and the end of an interrupted process, for the commands that render.
+// Signal handling, and the end of an interrupted process, for the commands that render.
 #pragma once
 
 #include <atomic>

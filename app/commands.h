@@ -20,7 +20,7 @@ struct RenderOptions {
       output;  // default: the scene's own file name, else the scene's stem, in this folder
   bool png = false;
   float exposure = 0;    // stops, of the PNG
-  bool clipPng = false;  // the PNG ends at 1 instead of rolling highlights off
+  bool clipPng = false;  // the PNG clips at 1 instead of compressing highlights
   RenderOverrides overrides;
   std::optional<double> seconds;      // --time
   std::optional<double> targetError;  // --target-error
@@ -29,7 +29,7 @@ struct RenderOptions {
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> strategyImages;  // a folder
   bool denoise = false;
-  bool autoLayers = false;                  // layers of what auto decided
+  bool autoLayers = false;                  // layers of the decisions of auto
   std::optional<double> checkpointSeconds;  // --checkpoint
   std::optional<double> previewSeconds;     // --preview
   std::optional<NetworkPlace> display;      // --display
@@ -57,13 +57,13 @@ struct CompareOptions {
   std::vector<double> times;      // seconds; neither times nor sample counts: 1, 4 and 16 s
   std::vector<int> sampleCounts;  // per pixel
   int repeats = 5;
-  std::optional<std::filesystem::path> reference;  // absent: made, or kept from before
+  std::optional<std::filesystem::path> reference;  // absent: rendered, or kept from before
   std::optional<double> referenceSeconds;          // absent: ten times the longest render
   std::filesystem::path output;                    // a folder
   float exposure = 0;                              // stops, of the pictures
   RenderOverrides overrides;
   int threads = 0;           // 0: all
-  bool ofProcessor = false;  // times are the processor's
+  bool ofProcessor = false;  // times are processor times
   bool quiet = false;
   bool strict = false;
   bool robust = true;
@@ -109,7 +109,7 @@ struct DeskOptions {
   PluginOptions plugins;
   RenderOverrides overrides;
   int port = 0;     // 0: any that is free
-  int threads = 0;  // 0: all
+  int threads = 0;  // 0: any free port
   bool quiet = false;
   bool strict = false;
   bool robust = true;
@@ -118,14 +118,14 @@ struct DeskOptions {
 struct PngOptions {
   std::filesystem::path input, output;  // output empty: beside the input, with the extension .png
   float exposure = 0;                   // stops
-  bool clip = false;                    // ends at 1 instead of rolling highlights off
+  bool clip = false;                    // clips at 1 instead of compressing highlights
   bool quiet = false;
 };
 
 struct CheckLightsOptions {
   std::optional<std::filesystem::path> scene;  // absent: types
   PluginOptions plugins;
-  std::string type;  // "": those of `plugins`, or of everyone where none is named
+  std::string type;  // "": all types of `plugins`, or all types if there are none
   bool json = false;
   uint64_t seed = 1;
   int threads = 0;  // 0: all
@@ -147,6 +147,6 @@ int RunDesk(const DeskOptions& options);
 int RunDenoise(const DenoiseOptions& options);
 int RunPng(const PngOptions& options);
 int RunLights(const LightsOptions& options);
-int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold
+int RunCheckLights(const CheckLightsOptions& options);  // fails if a property does not hold
 
 }  // namespace lampyr

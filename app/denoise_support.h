@@ -7,8 +7,8 @@
 
 namespace lampyr {
 
-// Denoises with progress on stderr, and says there what the filter had to do without and what it has removed. An image
-// without channels if `interrupted` was set. Throws an Error if the image cannot be denoised.
+// Denoises with progress on stderr, and reports there which inputs the filter lacked and what it removed. Returns an
+// image without channels if `interrupted` was set. Throws an Error if the image cannot be denoised.
 Image DenoiseForUser(const Image& noisy, int threads, const std::atomic<bool>& interrupted, bool quiet);
 
 }  // namespace lampyr

@@ -13,7 +13,7 @@ namespace lampyr {
 struct RenderReport {
   std::string scene, sceneHash, integrator;
   std::vector<std::pair<std::string, SettingValue>> settings;  // of the integrator
-  std::optional<UsedCounts> decided;  // by auto, on average over the film; nullopt: the integrator was named
+  std::optional<UsedCounts> decided;  // by auto, on average over the film; nullopt: the integrator was given
   struct Adaptive {
     double share = 0;
     uint64_t fewestSamples = 0, mostSamples = 0;  // of a pixel
@@ -27,7 +27,7 @@ struct RenderReport {
   std::vector<std::pair<std::string, std::string>> layers;  // further ones, and their light path expressions
   double parseSeconds = 0, buildSeconds = 0, writeSeconds = 0;
   uint64_t rejectedRays = 0;
-  int resumedSamples = 0;  // per pixel, that a checkpoint brought
+  int resumedSamples = 0;  // per pixel, from a checkpoint
   RenderOutcome outcome;
 };
 

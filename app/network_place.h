@@ -1,4 +1,4 @@
-// A place in the network, as options name it.
+// A network address, as given in options.
 #pragma once
 
 #include <string>

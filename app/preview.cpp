@@ -25,7 +25,7 @@ void Preview::MayShow(const ProgressiveRender& render, double secondsSoFar, Prog
   const Image image = render.Picture().Develop();
   try {
     WritePng(png_, image, exposure_, toneMap_);
-  } catch (const Error& error) {  // the render goes on
+  } catch (const Error& error) {  // the render continues
     progress.Clear();
     if (!hasFailed_) std::fprintf(stderr, "warning: no preview: %s\n", error.Text().c_str());
     hasFailed_ = true;
@@ -33,7 +33,7 @@ void Preview::MayShow(const ProgressiveRender& render, double secondsSoFar, Prog
   if (isOnTerminal_) PrintPicture(image, progress);
 }
 
-// In the place of the one before.
+// Overwrites the previous picture.
 void Preview::PrintPicture(const Image& image, Progress& progress) {
   constexpr int kUsualColumns = 80, kMostColumns = 64, kMostLines = 20;
   const int columns = std::min(TerminalColumns(STDERR_FILENO, kUsualColumns) - 1, kMostColumns);

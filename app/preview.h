@@ -14,7 +14,7 @@ class Preview {
   // `png`: written at most every `seconds`, atomically. `quiet`: nothing on the terminal.
   Preview(std::filesystem::path png, double seconds, float exposure, ToneMap toneMap, bool quiet);
 
-  // To be called after passes. Writes the picture so far if it is time; `progress` is cleared before it is printed.
+  // To be called after passes. Writes the picture so far when it is due; `progress` is cleared before printing.
   void MayShow(const ProgressiveRender& render, double secondsSoFar, Progress& progress);
 
  private:
@@ -26,7 +26,7 @@ class Preview {
   const ToneMap toneMap_;
   const bool isOnTerminal_;
   double next_;
-  bool hasFailed_ = false;  // to write a picture
+  bool hasFailed_ = false;  // writing a picture failed
   int lines_ = 0;  // of the picture on the terminal
 };
 

@@ -53,7 +53,7 @@ class TevPacket {
   std::string bytes_;
 };
 
-// The picture, and layers of light.
+// The channels of the picture and of layers of light.
 std::vector<size_t> ShownChannels(const Image& image) {
   std::vector<size_t> channels;
   const auto add = [&](const std::string& prefix) {
@@ -66,21 +66,21 @@ std::vector<size_t> ShownChannels(const Image& image) {
 }
 
 constexpr double kInterval = 1;  // seconds between pictures
-constexpr int kPatience = 3000;  // milliseconds in which a viewer has to take something
+constexpr int kPatience = 3000;  // milliseconds in which a viewer has to accept data
 constexpr size_t kLargestPacket = 1 << 26;
 
 void WaitUntilWritable(int socket) {
   pollfd waits{socket, POLLOUT, 0};
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatience);
   int ready = 0;
-  do {  // a signal is no answer
+  do {  // repeated after a signal
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     ready = poll(&waits, 1, std::max(static_cast<int>(left.count()), 0));
   } while (ready < 0 && errno == EINTR);
   if (ready <= 0) throw Error("it takes nothing");
 }
 
-// Throws an Error without a place.
+// Throws an Error without a location.
 int ConnectTo(const addrinfo& address) {
   const int made = socket(address.ai_family, address.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, address.ai_protocol);
   if (made < 0) throw Error(std::strerror(errno));
@@ -121,7 +121,7 @@ std::string TevUpdateImage(const std::string& name, const Image& image, const st
   for (const size_t channel : channels) packet.Add(static_cast<int64_t>(channel));
   for (size_t i = 0; i < channels.size(); ++i) packet.Add(static_cast<int64_t>(stride));
   const size_t row = stride * static_cast<size_t>(image.width);
-  // Up to the last value that is read.
+  // Up to the last value used.
   const size_t count =
       row * static_cast<size_t>(end - first) - stride + *std::max_element(channels.begin(), channels.end()) + 1;
   packet.Add(image.data.data() + row * static_cast<size_t>(first), count);

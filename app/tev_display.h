@@ -1,7 +1,7 @@
-// The picture of a render that is still running, in a viewer that speaks tev's protocol (https://github.com/Tom94/tev).
+// Displays the picture of a running render in a viewer that supports tev's protocol (https://github.com/Tom94/tev).
 //
-// A packet is its length in bytes (uint32, itself included), its kind (uint8) and what that kind has; strings end with
-// a zero byte, numbers are little-endian.
+// A packet is its length in bytes (uint32, itself included), its kind (uint8) and the data of that kind; strings end
+// with a zero byte, numbers are little-endian.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ class TevDisplay {
   TevDisplay& operator=(const TevDisplay&) = delete;
 
   // To be called after passes: sends the picture so far, with its layers of light, if a second has passed since the
-  // last. If the viewer is not there, or goes away or takes nothing for some seconds, warns once and sends no more.
+  // last. If the viewer is absent, disconnects or accepts no data for some seconds, warns once and sends no more.
   void MayShow(const ProgressiveRender& render, double secondsSoFar, Progress& progress);
   // Sends the picture in any case.
   void Show(const Film& film, Progress& progress);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Renders every scene of scenes/ by every integrator, small and with many samples, and says how many of them were dropped
-# (not finite, or negative) and how many rays were rejected: none, or it fails.
+# Renders every scene of scenes/ by every integrator, small and with many samples, and prints the numbers of dropped
+# samples (not finite, or negative) and of rejected rays. Fails unless all are 0.
 #
 #   scripts/dropped_samples.sh [SAMPLES [WIDTHxHEIGHT]]     (4096, 32x18: an hour on two cores)
 #
@@ -15,7 +15,7 @@ trap 'rm -rf "$stats"' EXIT
 failed=0
 for scene in "$root"/scenes/*.pbrt; do
   for integrator in path light bdpt sppm vcm; do
-    # With too many of them the render fails, after it has written its statistics.
+    # With too many dropped samples the render fails, after it has written its statistics.
     rm -f "$stats/stats.json"
     if ! "$lampyr" render "$scene" --integrator "$integrator" --spp "$samples" --resolution "$size" --quiet \
       --output "$stats/out.exr" --stats "$stats/stats.json" 2>"$stats/errors"; then

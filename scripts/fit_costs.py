@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Fits what merging costs in the pilot (render/analysis/pilot_candidates.cpp, Costs) to measured times.
+"""Fits the costs of merging in the pilot (render/analysis/pilot_candidates.cpp, Costs) to measured times.
 
     scripts/fit_costs.py [BINARY]
 
 Renders the scenes of scenes/ at 96×96 by path, bdpt, vcm and sppm on one thread, some three minutes, and searches the
 costs of lookups, found and stored photons for which vcm takes the measured times as long as bdpt, with the costs of rays
-as they are below; then those of the photons that sppm finds, which it does not weight, for sppm against path. Prints
-them, and what the pilot's model gets wrong: predicted ratios of times over measured ones.
+as they are below; then the cost of the photons that sppm finds, which it does not weight, for sppm against path. Prints
+the costs, and the error of the pilot's model: predicted ratios of times over measured ones.
 """
 import json
 import math
@@ -18,8 +18,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SAMPLES = {'path': 24, 'bdpt': 10, 'vcm': 10, 'sppm': 24}
-# As in the pilot, nanoseconds. Rays of path and bdpt are so alike from scene to scene that the times hardly tell their
-# costs apart.
+# As in the pilot, nanoseconds. The mix of rays in path and bdpt varies so little between scenes that the times hardly
+# determine their separate costs.
 RAY, SHADOW_RAY, CONNECTION, CAMERA_PATH_WITH_WEIGHTS, SIDE_BY_SIDE = 260, 350, 530, 1.12, 0.75
 MERGING = ['lookup', 'found', 'stored']
 

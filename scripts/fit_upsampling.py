@@ -23,7 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 FIRST, LAST, STEP = 360, 830, 10
 WHITE = (0.3127, 0.3290)
 PRIMARIES = [(0.64, 0.33), (0.30, 0.60), (0.15, 0.06)]
-D65_WEIGHTS = (1, -0.295, -0.689)  # of the mean and the characteristic vectors of daylight
+D65_WEIGHTS = (1, -0.295, -0.689)  # weights of the mean and the characteristic vectors of daylight
 TOLERANCE = 1e-6
 
 
@@ -73,7 +73,7 @@ def fit():
     count = len(knots)
     hats = numpy.stack([numpy.interp(wavelengths, knots, unit) for unit in numpy.eye(count)], axis=1)
     of_knots = channel_weights(wavelengths).T @ hats  # colour of a function, from its values at the knots
-    # Unknowns: red and green at the knots. Blue is the rest to 1, and its colour follows from theirs.
+    # Unknowns: red and green at the knots. Blue is 1 minus both, and its colour follows from theirs.
     nothing = numpy.zeros_like(of_knots)
     colours = numpy.block([[of_knots, nothing], [nothing, of_knots]])
     wanted = numpy.array([1, 0, 0, 0, 1, 0], dtype=float)

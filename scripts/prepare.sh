@@ -1,13 +1,13 @@
 # Sourced by lampyr.sh and tests/run: installs the Debian packages that are missing.
 
-# What the renderer is built from.
+# Packages to build the renderer.
 LAMPYR_BUILD_PACKAGES="g++ cmake ninja-build ccache libembree-dev libopenimageio-dev libopenexr-dev libflann-dev
   liblz4-dev libnanovdb-dev libglm-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev libeigen3-dev libpng-dev zlib1g-dev
   libcpp-httplib-dev"
-# What its tests and benchmarks need besides.
+# Further packages for its tests and benchmarks.
 LAMPYR_TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev patch"
 
-# What its fuzzers need besides.
+# Further packages for its fuzzers.
 LAMPYR_FUZZ_PACKAGES="clang"
 
 # install_missing PACKAGE…: quiet when there is nothing to do.
@@ -33,7 +33,7 @@ install_missing() {
   rm -f "$log"
 }
 
-# npm and node may be there without being Debian's.
+# npm and node may be installed from elsewhere than Debian.
 install_npm() {
   command -v npm >/dev/null && { command -v node || command -v nodejs; } >/dev/null || install_missing nodejs npm
 }

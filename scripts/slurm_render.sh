@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Renders a scene in parts on a Slurm cluster, and merges them into one image: where nothing is learned, the one that a
-# single machine makes (docs/long-renders.md).
+# Renders a scene in parts on a Slurm cluster, and merges them into one image: without learning, the same image as on a
+# single machine (docs/long-renders.md).
 #
 #   scripts/slurm_render.sh SCENE.pbrt PARTS OUT.exr [OPTION OF lampyr render]…
 #
 # Submits an array of PARTS jobs, and one that merges when all have succeeded. Prints the numbers of both. Parts and their
-# logs are in OUT.parts/, on a file system that all nodes see; so is the scene. A part that is lost (its node, its
-# process, its time) is queued again and goes on where its last checkpoint ends; the others are not touched. What is wrong
-# with the scene or the options is not tried again.
+# logs are in OUT.parts/, which must be on a file system that all nodes share, like the scene. A part that is lost (its
+# node, its process, its time) is queued again and continues from its last checkpoint; the others are not affected. A
+# part that fails because of the scene or the options is not tried again.
 #
 # --threads, --checkpoint, --shard, --output and --resume are set by the script: cores by --cpus-per-task in
 # LAMPYR_SBATCH, checkpoints by LAMPYR_CHECKPOINT.
@@ -15,7 +15,7 @@
 # LAMPYR          the binary; otherwise the one on the PATH, then the one built beside this script
 # LAMPYR_SBATCH   options for both jobs, e.g. "--partition=long --time=4:00:00 --cpus-per-task=16"
 # LAMPYR_TRIES    how often a part that fails is queued again (5)
-# LAMPYR_CHECKPOINT  how often a part writes what it goes on from (60s)
+# LAMPYR_CHECKPOINT  interval of a part's checkpoints (60s)
 set -eu
 
 fail() {
@@ -31,10 +31,10 @@ run_part() {
   "$lampyr" render "$scene" --shard "$index/$parts" --output "$folder/$index-of-$parts.exr" \
     --threads "${SLURM_CPUS_PER_TASK:-1}" --resume --checkpoint "${LAMPYR_CHECKPOINT:-60s}" "$@" &
   local render=$!
-  # Time is nearly over (--signal below): to be gone on with. A job that Slurm itself ends is Slurm's to queue again.
+  # Time is nearly over (--signal below): the part is continued. Slurm itself requeues the jobs that it ends.
   trap 'kill -TERM $render' USR1
   trap 'kill -TERM $render; wait $render; exit 143' TERM
-  # A signal ends the waiting, not the render.
+  # A signal ends `wait`, but not the render.
   while :; do
     wait "$render" && code=0 || code=$?
     kill -0 "$render" 2>/dev/null || break
@@ -49,7 +49,7 @@ run_part() {
   fi
   echo "part $index/$parts ended with exit code $code: queued again" >&2
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_$index"
-  # Slurm ends what it queues again; the job must not be over before.
+  # Slurm ends a job that is requeued; the job must not end before that.
   sleep 300
   exit $code
 }

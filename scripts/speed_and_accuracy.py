@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Makes docs/speed-and-accuracy.md: runs `lampyr compare` on the scenes of scenes/ and tells what came out.
+"""Makes docs/speed-and-accuracy.md: runs `lampyr compare` on the scenes of scenes/ and tabulates the results.
 
     scripts/speed_and_accuracy.py                               all scenes: two hours of two cores
     scripts/speed_and_accuracy.py --scenes pool,lamp --budget 1s,4s
                                                                 tables of these scenes, on the terminal
 
-Comparisons run side by side, each with a single thread, so that seconds are of one core. Reports that are in the work
-folder already, by the same binary, of the same files and settings, are not made again; their report.html are there to be
-looked at.
+Comparisons run in parallel, each with a single thread, so that seconds are of one core. Reports that are in the work
+folder already, by the same binary, of the same files and settings, are not made again; each has a report.html to view.
 """
 import argparse
 import concurrent.futures
@@ -36,7 +35,7 @@ RESAMPLINGS = 2000
 # --- running ---------------------------------------------------------------------------------------------------------
 
 def hash_of_files(folders):
-    """Of the names and contents of all files in these folders."""
+    """Hash of the names and contents of all files in these folders."""
     total = hashlib.sha256()
     for folder in folders:
         for file in sorted(file for file in folder.rglob('*') if file.is_file()):
@@ -61,8 +60,8 @@ class Job:
                 *self.options, '-o', str(self.folder)]
 
     def key(self):
-        """What the report depends on: binary, scene, the files that scenes read, and settings. All files that any scene of
-        the table may read count, which is simpler than to follow those of one."""
+        """The inputs of the report: binary, scene, the files that scenes read, and settings. All files that any scene of
+        the table may read count, which is simpler than finding those of one scene."""
         binary = hashlib.sha256(LAMPYR.read_bytes()).hexdigest()
         scene = hashlib.sha256(self.file.read_bytes()).hexdigest()
         folders = [ROOT / 'scenes/data', ROOT / 'scenes/profiles'] if self.table == 'own' else [PEER]
@@ -78,7 +77,7 @@ class Job:
         key = self.key()
         if results.exists() and kept.exists() and kept.read_text() == key:
             return json.loads(results.read_text())
-        # Results of an attempt that is cut short, or of another binary, must not pass for those of the old key.
+        # Results of an interrupted attempt, or of another binary, must not be taken for those of the old key.
         kept.unlink(missing_ok=True)
         integrators = list(self.integrators)
         while True:
@@ -95,7 +94,7 @@ class Job:
 
 
 def run_all(jobs, parallel):
-    """The results of each job that succeeded, in order, and what became of the others."""
+    """The results of each job that succeeded, in order, and the errors of the others."""
     results, failures = {}, {}
     with concurrent.futures.ThreadPoolExecutor(parallel) as pool:
         futures = {pool.submit(job.run): job for job in jobs}
@@ -145,16 +144,16 @@ def last(integrator):
 
 
 def has_mean_bias(integrator):
-    """Its picture is too dark or too bright, by more than chance. Of few seeds a bias of a third is hardly ever significant
-    at p < 0.01: one that is larger than a twentieth counts where its 95 % interval is without 0."""
+    """True if its picture is significantly too dark or too bright. With few seeds a bias of a third is hardly ever significant
+    at p < 0.01: one larger than a twentieth counts if its 95 % interval excludes 0."""
     bias = integrator['meanBias']
     is_large = abs(bias['value']) > 0.05 and bias['low'] * bias['high'] > 0
     return bias['significant'] or is_large
 
 
 def converges(integrator):
-    """Nothing is missing from its picture, or wrong in it, that could be told from chance. Integrators that merge photons
-    are consistent: their bias, which is part of their error, falls with more samples."""
+    """True if its picture has no significant bias. Integrators that merge photons are consistent: their bias, which is part
+    of their error, falls with more samples."""
     if integrator['blurs']:
         return True
     systematic = integrator['systematic']
@@ -362,7 +361,7 @@ def mean_table(tables):
 
 
 def winners(rows):
-    """Who is best where, by how much over the next best fixed integrator that converges."""
+    """The best integrator of each scene, and its lead over the next best fixed integrator that converges."""
     wins = {}
     for scene, results in rows:
         best = best_fixed(results)

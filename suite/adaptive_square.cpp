@@ -65,7 +65,7 @@ AdaptiveSquare::AdaptiveSquare(double measure, std::span<const Point2d> hints, c
   }
   LookAgainBesideTheLit(function, rng);
   Refine(function, rng, budget / 2);
-  // Children come after their parents: a reverse pass has the values of all children before it sums them.
+  // Children come after their parents, so that a reverse pass has the values of all children before it sums them.
   for (size_t i = nodes_.size(); i-- > 0;) {
     Node& node = nodes_[i];
     if (node.firstChild < 0) {
@@ -80,8 +80,8 @@ AdaptiveSquare::AdaptiveSquare(double measure, std::span<const Point2d> hints, c
   }
 }
 
-// Splits cells until none holds many hints, or hints whose share of the density its probe points miss because it lies
-// in a corner.
+// Splits cells until none holds many hints, nor hints that have a large share of the density but lie in a corner that
+// the cell's probe points miss.
 void AdaptiveSquare::SplitWhereHinted(std::span<const Point2d> hints, const Function& function, Rng& rng) {
   constexpr size_t kMost = 8;
   const double each = 1.0 / static_cast<double>(hints.size());

@@ -38,7 +38,7 @@ inline Answer Ask(const Light& light, const Question& question) {
   return Ask(light, question, question.context);
 }
 
-// Values to compare. Densities that only bidirectional techniques ask for may be 0 in AllButBidirectional.
+// Values to compare. Densities that only bidirectional techniques use may be 0 in AllButBidirectional.
 enum class Compare { Everything, AllButBidirectional };
 
 // The first difference as text, such as "radiance of samples: 1 0.5 0.2 instead of 2 1 0.4"; empty if there is none.

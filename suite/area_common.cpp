@@ -37,7 +37,7 @@ void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions
     const std::string where = subject.caseName + " from point " + std::to_string(i);
     const auto start = FindFixedStart(subject, FixedPart::Position, 1e-5 * enclosure.radius, places);
     if (!start) {
-      // Nothing is emitted, or no random number decides on the position alone.
+      // Nothing is emitted, or no single random number determines the position.
       const bool emits = subject.light->GetPowerEstimate(subject.context).Average() > 0;
       report.AddError(subject.name, "emission-directions", where, emits ? 1 : 0, 0.5);
       continue;

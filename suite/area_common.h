@@ -42,7 +42,7 @@ double SolidAngleToAreaMismatch(const LightSample& sample);
 void CheckAreaEstimates(const SuiteSubject& subject, const Enclosure& enclosure, const Receiver& receiver, Rng& rng,
                         SuiteReport& report);
 
-// -1 where a flat light shines to its inner side alone (a two-sided one behind a cone), as its bounds say; otherwise 1.
+// -1 if, by its bounds, a flat light emits to its inner side alone (a two-sided one behind a cone); otherwise 1.
 // `normal`: unit, of the outer side.
 double EmittingSide(const EmissionBounds& bounds, const Vector3d& normal);
 

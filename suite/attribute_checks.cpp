@@ -95,7 +95,7 @@ bool AttributeChecker::IsLit(const EmissionSample& photon, const Point3& P, doub
   return e && !IsBlack(*e);
 }
 
-// True if the point at distance `t` along the photon's path is lit, or not, as `isLit` says, there or within the
+// True if the point at distance `t` along the photon's path is lit, or not, as `isLit` requires, there or within the
 // rounding of positions. A photon that comes through a window at a grazing angle stays within rounding of the window's
 // plane for a while.
 bool AttributeChecker::IsAsExpected(const EmissionSample& photon, double t, bool isLit) const {

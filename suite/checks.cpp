@@ -129,7 +129,7 @@ void CheckPowerEstimate(const SuiteSubject& subject, const Estimate& emitted, Su
     report.AddProbability(subject.name, "power-estimate", subject.caseName, EqualMeans(emitted, {estimate, 0}, 1e-3),
                           InWords("GetPowerEstimate in W", {estimate, 0}, emitted));
   } else {
-    // Without a closed form only the order of magnitude is promised.
+    // Without a closed form only the order of magnitude is guaranteed.
     report.AddError(subject.name, "power-estimate", subject.caseName, std::abs(std::log(estimate / emitted.value)),
                     std::log(10.0), InWords("GetPowerEstimate in W", {estimate, 0}, emitted));
   }
@@ -140,7 +140,7 @@ std::optional<FixedStart> FindFixedStart(const SuiteSubject& subject, FixedPart 
     const Vector3 difference = part == FixedPart::Position ? a.position - b.position : a.direction - b.direction;
     return static_cast<double>(glm::length(difference)) > tolerance;
   };
-  constexpr int kAttempts = 1000;  // a narrow beam leaves from few places of a surface
+  constexpr int kAttempts = 1000;  // a narrow beam leaves from a small part of a surface
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     FixedStart start;
     start.context = RandomContext(subject, rng);

@@ -33,8 +33,8 @@ struct Receiver {
   Point3 position;
 };
 
-// Calls `check`. A std::exception that it throws is a failure of "exceptions", unless it is for want of memory or an
-// Error with a location, which is one of the parameters.
+// Calls `check`. A std::exception that it throws is a failure of "exceptions", except for a lack of memory, and for an
+// Error with a location, which concerns the parameters.
 void WithoutExceptions(const std::string& name, const std::string& caseName, SuiteReport& report,
                        const std::function<void()>& check);
 
@@ -185,7 +185,7 @@ void CheckDarkDensity(const SuiteSubject& subject, const std::string& where, con
                         all.value <= 1 ? 1.0 : EqualMeans(all, {1, 0}, 1e-3),
                         InWords("the integral of pdfDirect, dark directions included,", all, {1, 0}));
 }
-// Probability of a rare event and the mean of its values. As many draws are taken as it needs to observe the event some
+// Probability of a rare event and the mean of its values. Draws are taken until the event has been observed some
 // hundred times.
 struct Counted {
   Estimate share, sum;  // fraction of draws that count; mean of their values over all draws

@@ -43,7 +43,7 @@ void ContractChecker::Add(const char* property, const std::string& suffix, const
   report.AddError(subject_.name, property, subject_.caseName + suffix, difference.empty() ? 0 : 1, 0.5, difference);
 }
 
-// Asks many questions, because a light may be wrong in few places only.
+// Uses many questions, because a light may be wrong in few places only.
 void ContractChecker::CheckValid(const SuiteOptions& options, SuiteReport& report) const {
   constexpr int kManyQuestions = 2048;
   constexpr uint64_t kOther = 0x76616c6964;  // than those whose answers are compared
@@ -78,7 +78,8 @@ void ContractChecker::CheckRepeat(SuiteReport& report) const {
   Add("repeat", " in another order", FirstDifferenceBackwards(), report);
   auto elsewhere = std::async(std::launch::async, [&] { return FirstDifference(nothing, Compare::Everything); });
   Add("repeat", " on another thread", elsewhere.get(), report);
-  // Both ask at the same time, different questions: what a light keeps of one of them shows in the other's answer.
+  // Both threads ask different questions at the same time: state that a light keeps of one of them shows in the other's
+  // answer.
   std::string together;
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds && together.empty(); ++round) {

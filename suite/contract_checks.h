@@ -1,4 +1,4 @@
-// Checks that a light gives values that can be, and depends only on its documented inputs.
+// Checks that a light returns possible values, and depends only on its documented inputs.
 //
 //   valid           no radiance or density is negative, or not a number
 //   bidirectional   asking for densities of emission changes nothing but them
@@ -19,7 +19,7 @@ class ContractChecker {
   void CheckTime(SuiteReport& report) const;
   // Must be called after these, so that state changed by the other checks shows.
   void CheckRepeat(SuiteReport& report) const;
-  // Asks so much that a light which wears out would do so: last.
+  // Calls the light often enough to reveal defects that accumulate. To be called last.
   void CheckValid(const SuiteOptions& options, SuiteReport& report) const;
 
  private:

@@ -1,6 +1,6 @@
 // Directions of photons against their density: the integral, χ² in cells, and moments. A tilt moves the mean, a stretch
 // the second moments. A ripple finer than the cells shows in the mean ratio of the density to that of adjacent
-// directions: if photons do not follow the ripple, the ratio is lower than the density promises.
+// directions: if photons do not follow the ripple, the ratio is lower than the density implies.
 #include "suite/area_common.h"
 #include "suite/direction_source.h"
 #include "suite/exact_surface.h"

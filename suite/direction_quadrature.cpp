@@ -52,8 +52,8 @@ Cap CapAround(std::span<const Vector3d> directions) {
     const Vector3d chord = d - cap.axis;
     widest = std::max(widest, 0.5 * glm::dot(chord, chord));
   }
-  // The widest of a few hundred directions leaves out some thousandths of a soft edge, so the cap is twice as wide. The
-  // rest is smaller than the tests can detect.
+  // The widest of a few hundred directions excludes some thousandths of a soft edge, so the cap is twice as wide. The
+  // remainder is smaller than the tests can detect.
   cap.wMax = widest < 0.5 ? std::max(2 * widest, 1e-14) : 2.0;
   // Bright directions are kept away from the poles, around which small features map to slivers of the square.
   if (cap.IsSphere()) cap.axis = Around(cap.axis).x;

@@ -64,7 +64,7 @@ void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteRepo
         [&] { return Edited(*subject.light, change, *origin.build); }, report);
   }
   if (changes.size() < 2) return;
-  // Two edits in sequence: an edited light must know all parameters from which it was made.
+  // Two edits in sequence: an edited light must keep all parameters from which it was made.
   const ParameterList both = MergeParameters(MergeParameters(*origin.parameters, changes[0]), changes[1]);
   CompareEdit(
       subject, origin, both, NameOf(changes[0]) + " and then " + NameOf(changes[1]),

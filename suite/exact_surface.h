@@ -1,4 +1,4 @@
-// The exact surface point, in double, of a sample or a photon: by the shape's model, or by tracing the light's own
+// The exact surface point, in double, of a sample or a photon: from the shape's model, or by tracing the light's own
 // surface.
 #pragma once
 

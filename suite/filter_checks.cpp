@@ -162,7 +162,7 @@ double Invalidity(const Color& color) {
   return std::isfinite(color.r + color.g + color.b) ? -static_cast<double>(least) : kNoNumber;
 }
 
-// Asks for many edges, because a filter may be wrong for few only. Has its own random numbers.
+// Tests many edges, because a filter may be wrong for few only. Uses its own random numbers.
 void FunctionCheck::CheckManyEdges() {
   constexpr size_t kManyEdges = 2048;
   constexpr uint64_t kOther = 0x65646765;

@@ -61,15 +61,15 @@ class WorstEdge {
 // Description such as "diffuse light is (…), right is (…)", for the lobe type with the larger difference.
 std::string SayDifference(const Filtered& found, const Filtered& right);
 
-// repeat, batch, threads, time, light-pdf, valid, light, identity, modifier: of any filter.
+// Properties repeat, batch, threads, time, light-pdf, valid, light, identity, modifier of any filter.
 void CheckFilterFunction(const FilterCase& filterCase, SuiteReport& report);
-// samples: of a block as it is written.
+// Property samples of an unchanged block.
 void CheckFilterChanges(const FilterCase& filterCase, SuiteReport& report);
-// density, invert, lobes, groups.
+// Properties density, invert, lobes, groups.
 void CheckFilterSettings(const FilterCase& filterCase, SuiteReport& report);
-// combine.
+// Property combine.
 void CheckFilterCombined(const FilterCase& filterCase, SuiteReport& report);
-// placement, coordsys, motion.
+// Properties placement, coordsys, motion.
 void CheckFilterPlace(const FilterCase& filterCase, SuiteReport& report);
 
 }  // namespace lampyr::suite

@@ -1,4 +1,4 @@
-// Test edges for filters, between receivers and points on a light. They cover all the ways in which an edge can meet a
+// Test edges for filters, between receivers and points on a light. They cover all positions of an edge relative to a
 // filter.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace lampyr::suite {
 
-// An edge in the filter's own space, in double. Filters are about a unit large and look along -z.
+// An edge in the filter's own space, in double. Filters are about one unit in size and look along -z.
 struct SuiteEdge {
   const char* kind;
   Point3d receiver;

@@ -1,4 +1,4 @@
-// Placement of a filter: wherever it is placed, and in whichever way, its factor equals that of the same edge in its
+// Placement of a filter: in any placement, however it is given, the factor equals that of the same edge in the filter's
 // own space.
 //
 // A factor may have steps, and rounding may move a placed edge across a step: the value on the other side is correct

@@ -1,9 +1,9 @@
-// The suite of light filters: proof that a filter is a factor on the edge between a light and a receiver, and that its
-// parameters mean what they say. It runs over filter types as the pdf suite runs over types of light, and gives results
-// of the same kind. None of its properties is statistical: each case is an error against a tolerance, and its name says
-// in words where the error is largest.
+// The suite of light filters: tests that a filter is a factor on the edge between a light and a receiver, and that its
+// parameters have their documented meaning. It runs over filter types as the pdf suite runs over types of light, and
+// gives results of the same kind. None of its properties is statistical: each case is an error against a tolerance, and
+// its name describes where the error is largest.
 //
-// Properties, by their names in the results. FilterPropertyMeaning says each in one line.
+// Properties, by their names in the results. FilterPropertyMeaning describes each in one line.
 //
 //   samples      the type has sample blocks, and each changes some light
 //   repeat       repeated queries give the same bits, whatever was queried in between

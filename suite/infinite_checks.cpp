@@ -43,7 +43,7 @@ class InfiniteChecker {
   void CheckEmissionDirections();
   void CheckPower();
   double SampleMismatch(const LightSample& sample, const Point3& P) const;
-  // The point where the photon's line leaves the scene: every surface that it may meet lies before it.
+  // The point where the photon's line leaves the scene, beyond every surface that the photon may hit.
   Point3 FarEnd(const EmissionSample& photon) const { return photon.position + 2 * scene_.radius * photon.direction; }
   static LightHit HitAlong(const Vector3& toLight, const Point3& P) {
     LightHit hit;
@@ -199,7 +199,7 @@ void InfiniteChecker::CheckStartsGivenDirection(int index) {
   const auto start = FindFixedStart(subject_, FixedPart::Direction, 1e-5, places_);
   const std::string where = Case(" disk " + std::to_string(index));
   if (!start) {
-    // Nothing is emitted, or no random number decides on the direction alone.
+    // Nothing is emitted, or no single random number determines the direction.
     const bool emits = light_.GetPowerEstimate(subject_.context).Average() > 0;
     report_.AddError(subject_.name, "emission-positions", where, emits ? 1 : 0, 0.5);
     return;
@@ -221,7 +221,7 @@ void InfiniteChecker::CheckStartsGivenDirection(int index) {
     if (!photon) return std::nullopt;
     const Vector3d offset = (Vector3d(photon->position) - Vector3d(scene_.center)) / radius_;
     const double a = glm::dot(offset, x), b = glm::dot(offset, y), turns = std::atan2(b, a) / (2 * kPiDouble);
-    // Photons that start outside the disk meet nothing. The tolerance at the rim is for rounding.
+    // Photons that start outside the disk hit nothing. The tolerance at the rim is for rounding.
     if (a * a + b * b > 1.0001) return std::nullopt;
     return Point2d(std::min(a * a + b * b, 0x1.fffffep-1), turns < 0 ? turns + 1 : turns);
   };

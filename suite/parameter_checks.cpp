@@ -190,8 +190,8 @@ void CommonParameters::CheckColors() {
   }
 }
 
-// Normalisation is by the area in render space where there is one; points have no size. At infinity its meaning is up
-// to the type.
+// Normalisation is by the area in render space, if the light has one; points have no size. At infinity its meaning
+// depends on the type.
 void CommonParameters::CheckNormalize() {
   const Light& light = *subject_.light;
   if (!Has("normalize", ParameterType::Bool) || IsAtInfinity(light.Kind())) return;

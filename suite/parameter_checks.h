@@ -12,9 +12,9 @@ namespace lampyr::suite {
 // of that parameter, and by nothing else.
 void CheckCommonParameters(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report);
 
-// Parameter lists that each change one parameter of the type, with others that it needs to have an effect. Of the
-// candidate values, the first is taken that the type accepts and that makes a different light. `parse` must find the
-// suite's input files.
+// Parameter lists that each change one parameter of the type, with others that it needs to have an effect. The first of
+// the candidate values is taken that the type accepts and that makes a different light. `parse` must find the suite's
+// input files.
 using ParseParameters = std::function<ParameterList(const std::string& text)>;
 std::vector<ParameterList> ChangesOfEach(const SuiteSubject& subject, const SuiteOrigin& origin,
                                          const ParseParameters& parse);

@@ -109,9 +109,9 @@ static SuiteOptions WithParts(SuiteOptions options, unsigned parts) {
   return options;
 }
 
-// A doubtful light is checked again, at most twice: a correct light has one p-value in ten thousand below the first
+// Checks a doubtful light again, at most twice: a correct light has one p-value in ten thousand below the first
 // threshold, and one error in some ten thousand above its tolerance. A light with several clearly failed results is
-// wrong beyond doubt. Parts draw random numbers of their own: those without a doubtful result would give nothing else.
+// certainly wrong. Each part has random numbers of its own: parts without a doubtful result would give the same again.
 static void CheckSamplesAgain(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   constexpr double kDoubtful = 1e-4, kSure = 1e-9;
   constexpr size_t kMany = 3;

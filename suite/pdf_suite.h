@@ -1,32 +1,31 @@
-// The pdf consistency suite: proof by statistics that the three techniques of a light agree. It runs over the registry,
-// over a plugin's type or over a single light, and prints nothing itself.
+// The pdf consistency suite: statistical evidence that the three techniques of a light agree. It runs over the
+// registry, over a plugin's type or over a single light, and prints nothing itself.
 //
-// Properties, by their names in the results (properties.h says the same of them to those whose light fails one):
+// Properties, by their names in the results (properties.h explains them to authors whose light fails one):
 //
 //   integral             pdfDirect integrates to the probability that a sample exists, 1 where the light is all visible
 //   directions           χ² of sampled points (or directions, at infinity) against pdfDirect
 //   strata               the same by classes of the cosine at the light, from receivers very near and very far, grazing
-//                        and edge-on: where few samples go
+//                        and edge-on, where few samples fall
 //   consistency          EvaluateSamples on a generated sample gives back radiance, normal and all densities
 //   surface              a sample's normal, position and density agree with the shape, evaluated apart from the light;
 //                        its solidAngleToArea is that of its place
 //   one-sided            nothing leaves a one-sided surface at its back
 //   irradiance           by light sampling = by quadrature over the surface
-//   patches              each is chosen as PatchProbability says; a light that is its own surface has one
-//   position-error       bounds how far a position is off the surface, and is no more than rounding can be
-//   uvw                  the coordinates that a ray finds there; a uniform light may leave them at 0
+//   patches              each is chosen with PatchProbability; a light that is its own surface has one
+//   position-error       bounds the distance of a position from the surface, and is no larger than rounding can make it
+//   uvw                  the coordinates of a ray's hit there; a uniform light may leave them at 0
 //   emission-integral    the densities of emission integrate to 1
 //   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection, and moments
 //   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge, and its
-//   emissionCosine
-//                        is that of its direction (1 for points and lights at infinity)
+//                        emissionCosine is that of its direction (1 for points and lights at infinity)
 //   emission-origin      a photon's place does not depend on its direction, even on a dark one
-//   shines-from          a photon lights what is beyond shinesFrom, nothing before; it is 0 where CanBeAimed is true
+//   shines-from          a photon lights points beyond shinesFrom and none before; it is 0 if CanBeAimed is true
 //   power                by emission = by direct sampling on an enclosing sphere
-//   power-estimate       GetPowerEstimate, as exact as light.h asks for
+//   power-estimate       GetPowerEstimate, as exact as light.h requires
 //   energy               of the bounds: the power estimate times importanceMultiplier
 //   bounds               photons leave within GetEmissionBounds
-//   estimate             no estimate is 0 where a sample arrives
+//   estimate             no estimate is 0 at a receiver that a sample reaches
 //   segment              no light arrives on a segment of a ray outside of the range that the light's estimate gives,
 //                        also without an end; χ² of equiangular distances in it from points of the light (the density
 //                        of these is pdfEmit: emission-positions)
@@ -69,7 +68,7 @@ class SuiteReport {
   // Number of errors above their tolerance plus number of p-values below `p`.
   size_t CountDoubtful(double p) const;
   // Merges a second run on the same light, from other receivers and with other random numbers. For each error above its
-  // tolerance, and each p-value below `doubtful`, the better of the two results is kept. A fault shows in both runs. A
+  // tolerance, and each p-value below `doubtful`, the better of the two results is kept. A defect shows in both runs. A
   // sample that happens to lie on the edge of a texel, or a quadrature that misses a narrow feature and underestimates
   // its error, does not recur in the same case.
   void Confirm(const SuiteReport& again, double doubtful);
@@ -104,7 +103,7 @@ struct SuiteOptions {
   int thoroughEvery = 1;  // of RunPdfSuite: every n-th of the thorough cases
   int editEvery = 1;  // of RunPdfSuite: every n-th sample block of a type, from the first on, is edited by each of its
                       // parameters; the others by a few
-  // Called repeatedly with the fraction that is done, one call at a time. May be empty.
+  // Called repeatedly with the completed fraction, one call at a time. May be empty.
   std::function<void(double fraction)> progress;
 };
 
@@ -116,14 +115,14 @@ struct SuiteSubject {
   bool isPowerExact = true;             // GetPowerEstimate is a closed form here
   // The light's parameters "diffuse" and "specular": samples, evaluations and photons carry the emission times them.
   double diffuseMultiplier = 1, specularMultiplier = 1;
-  // True to run the strata and direction parts as well, which takes some seconds: densities where few samples go, and
+  // True to run the strata and direction parts as well, which takes some seconds: densities where few samples fall, and
   // the directions of photons at fine resolution.
   bool isThorough = true;
   double powerError = 6e-4;  // relative standard error of the power; five times that is below half a per cent
   std::string name, caseName;
 };
 
-// Inputs from which a light was made. Editing it is compared with making it afresh.
+// Inputs from which a light was made, for comparing an edited light with one made afresh.
 struct SuiteOrigin {
   const LightType* type = nullptr;
   const ParameterList* parameters = nullptr;

@@ -1,5 +1,5 @@
-// The origin of a photon on a surface must not depend on the direction that it is then given: light tracing connects
-// the origin to the camera for all directions at once.
+// The origin of a photon on a surface must not depend on the direction that is sampled afterwards: light tracing
+// connects the origin to the camera for all directions at once.
 #include "suite/checks.h"
 
 namespace lampyr::suite {
@@ -13,7 +13,7 @@ bool SameOrigin(const EmissionSample& a, const EmissionSample& b) {
 
 bool IsUsable(const EmissionSample& photon) {
   if (!(photon.pdfEmit.value > 0) || std::abs(glm::length(photon.direction) - 1) > 1e-4f) return false;
-  // A photon without a density of its direction must carry nothing.
+  // A photon whose direction has no density must be black.
   const bool isBlack = photon.diffuse.IsBlack() && photon.specular.IsBlack();
   return isBlack || (photon.pdfEmitDirection.value > 0 && photon.emissionCosine > 0);
 }

@@ -7,7 +7,7 @@ namespace lampyr::suite {
 namespace {
 
 // The largest difference of two quantities that should be the same, relative to the largest value that occurs: in a
-// narrow cone the rounding of a direction is a visible part of its soft edge.
+// narrow cone the rounding of a direction is a significant part of its soft edge.
 struct LargestDifference {
   double difference = 0, largest = 0;
   void Note(double a, double b) {

@@ -1,4 +1,4 @@
-// The pdf suite on the lights of a scene, as they are placed there, and the properties of choosing among them:
+// The pdf suite on the lights of a scene, as they are placed there, and the properties of selecting among them:
 //
 //   selection    at every receiver the probabilities of all lights sum to 1, and none that contributes has 0
 #pragma once

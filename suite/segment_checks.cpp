@@ -1,5 +1,5 @@
-// Property segment: what a light says of a segment of a ray, by brute force, and equiangular distances from points of
-// the light in the range that it says.
+// Property segment: a light's estimates for a segment of a ray against brute force, and equiangular distances from
+// points of the light in the range that it reports.
 #include <cstdio>
 
 #include "lights/services/equiangular.h"
@@ -30,7 +30,7 @@ class SegmentChecker {
  private:
   static constexpr int kSegments = 96, kPoints = 32;
 
-  // `through`: the parameter of a point that is likely to be lit.
+  // `through`: parameter on the ray of a point that is likely to be lit.
   struct Segment {
     Point3 origin{0.0f};
     Vector3 direction{0, 0, 1};
@@ -39,7 +39,7 @@ class SegmentChecker {
     Point3 At(float t) const { return origin + t * direction; }
   };
 
-  // Apart from the other checks, so that their random numbers do not depend on these.
+  // Separate from the other checks, whose random numbers then do not depend on these.
   static Rng MakeRngOfSegments(const SuiteSubject& subject, const SuiteOptions& options) {
     SuiteOptions seeded = options;
     constexpr uint64_t kOfSegments = 0x5e91;
@@ -65,7 +65,8 @@ class SegmentChecker {
   std::string words_;
 };
 
-// Through points on the paths of photons, which a narrow beam lights, and through points anywhere around the light.
+// Chooses segments through points on the paths of photons, which a narrow beam lights, and through points anywhere
+// around the light.
 SegmentChecker::Segment SegmentChecker::ChooseSegment(int index) {
   Point3 point = middle_ + 6 * size_ * (Point3(rng_.NextFloat(), rng_.NextFloat(), rng_.NextFloat()) - 0.5f);
   const auto photon = light_.GenerateEmission(RandomContext(subject_, rng_));
@@ -141,8 +142,8 @@ void SegmentChecker::CheckSegment(const Segment& segment) {
   }
 }
 
-// χ² of equiangular distances from points of the light. Cells of equal angle are borders of the same share; what is
-// expected of each is the integral of the density over its distances.
+// χ² of equiangular distances from points of the light. Cells of equal angle have borders of the same share; the
+// expected count of each is the integral of the density over its distances.
 void SegmentChecker::CheckDistances() {
   if (IsAtInfinity(light_.Kind())) return;
   constexpr int kApexes = 8, kCells = 16, kDraws = 512, kSteps = 32;

@@ -1,5 +1,5 @@
 // Properties of lights on a shape, for which there is a model. Integrals run over the surface's own parameters: every
-// point that a direction meets counts, except the hidden ones of a closed convex shape.
+// point that a direction hits counts, except the hidden ones of a closed convex shape.
 #include "suite/area_common.h"
 
 namespace lampyr::suite {
@@ -176,8 +176,8 @@ void ShapeChecker::CheckSample(const LightSample& sample, const Point3& P, doubl
 }
 
 // A tenth of the relative difference between a sample's pdfDirect and that of the surface point at parameters p. Where
-// the density jumps (on the edge of a texel), roundings may fall on either side: the least difference within rounding
-// is taken.
+// the density jumps (on the edge of a texel), roundings may fall on either side: the smallest difference within
+// rounding is taken.
 double ShapeChecker::DensityMismatch(const LightSample& sample, const Point3& P, const Point2d& p) const {
   const auto mismatchAt = [&](const Point2d& q) {
     const LightHit own = model_.HitFrom(sample.patchIndex, model_.At(sample.patchIndex, q.x, q.y), P);
@@ -275,7 +275,7 @@ void ShapeChecker::CheckEmission() {
       continue;
     }
     ++observed[cells_.Of(model_, photon->patchIndex, photon->position)];
-    // The edge to where the photon may land.
+    // The edge to the point where the photon may land.
     const LightHit hit = HitOf(*photon, static_cast<float>(2 * extent_.radius));
     const auto e = light_.EvaluateSamples(subject_.context, hit, photon->position + hit.distance * photon->direction);
     if (bounds && LeavesBounds(*bounds, enclosure_, *photon)) outside = 1;

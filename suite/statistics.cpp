@@ -62,8 +62,8 @@ double ChiSquaredTest(std::span<const double> observed, std::span<const double> 
     }
   }
   if (pooledExpected + pooledError > 1e-3) {
-    // Small counts are not normally distributed: one more count of variance covers what the Poisson distribution allows
-    // beyond the normal one.
+    // Small counts are not normally distributed: one more count of variance covers the difference of the Poisson
+    // distribution from the normal one.
     const double excess = pooledObserved - pooledExpected;
     statistic += excess * excess / (pooledExpected + 1 + pooledError * pooledError);
     ++cells;

@@ -13,8 +13,8 @@ double ChiSquaredTail(double statistic, int degrees);
 double NormalTail(double z);
 
 // p-value of the observed counts against the expected ones. `errors` are bounds on the errors of the expectations,
-// which widen what is allowed; cells of less than 5 expected counts are pooled. Counts where nothing is expected give
-// 0.
+// which widen the tolerance; cells of less than 5 expected counts are pooled. The result is 0 if there are counts where
+// none is expected.
 double ChiSquaredTest(std::span<const double> observed, std::span<const double> expected,
                       std::span<const double> errors);
 

@@ -1,5 +1,6 @@
-// Densities where few samples go: receivers from very near to very far and at the light's edge, with directions in
-// strata of the cosine at the light. A density that is wrong in one stratum only is lost in the integral over all.
+// Densities where few samples fall: receivers from very near to very far and at the light's edge, with directions in
+// strata of the cosine at the light. A density that is wrong in one stratum only does not show in the integral over
+// all.
 //
 // In each stratum the share of the samples must equal the integral of the density. Delta lights have no strata: their
 // discrete density and the law of distance are checked, near and far.
@@ -9,8 +10,8 @@ namespace lampyr::suite {
 
 namespace {
 
-// Edges of the strata: cosines at the light. Below the first, the effect of rounding on a cosine exceeds what is
-// tested.
+// Edges of the strata: cosines at the light. Below the first one, the effect of rounding on a cosine exceeds the
+// tolerance.
 constexpr double kEdges[] = {1e-3, 0.01, 0.05, 0.2, 0.5, 1.01};
 constexpr int kStrata = static_cast<int>(std::size(kEdges)) - 1;
 
@@ -98,7 +99,7 @@ int StrataChecker::StratumOfSample(const LightSample& sample, const Point3& P) c
   return stratum >= 0 && surface_.Sees(P, sample) ? stratum : -1;
 }
 
-// Draws more and more points until the shares of all strata that can be seen are well known.
+// Draws more and more points until the shares of all visible strata are known precisely.
 Shares StrataChecker::Draw(const Point3& P) {
   Shares shares;
   for (int points = kFewest; points <= kMost; points *= 4) {
@@ -145,7 +146,7 @@ void StrataChecker::Integrate(const Point3& P, int first, const Shares& seen, Sh
   const auto [one, other] = surface_.IntegrateDirections(P, hints, density, rng_, effort_ * kBudget);
   promised.of[first] = one;
   if (first + 1 < kStrata) promised.of[first + 1] = other;
-  // A strip, as there is around anything round, or in a corner, may not be found among directions: it is then
+  // A strip, as around round shapes, or in a corner, may be missed by a quadrature over directions: it is then
   // integrated over the surface.
   if (subject_.model) return;
   for (const int stratum : {first, first + 1}) {
@@ -192,13 +193,13 @@ void StrataChecker::CheckReceiver(const Receiver& receiver) {
   Shares promised;
   for (int first = 0; first < kStrata; first += 2) {
     const double hits = seen.hits[first] + (first + 1 < kStrata ? seen.hits[first + 1] : 0.0);
-    // If no sample goes into these strata at all, property "irradiance" detects whether one should.
+    // If no sample falls into these strata at all, property "irradiance" detects whether one should.
     if (hits >= kEnough) Integrate(receiver.position, first, seen, promised);
   }
   const bool isFar =
       glm::length(Point3d(receiver.position) - surface_.Around().middle) > kFar * surface_.Around().radius;
   for (int i = 0; i < kStrata; ++i) {
-    // A strip that few samples meet is too thin for the quadrature too. From afar a flat part has a single cosine: if
+    // A strip that few samples hit is too thin for the quadrature, too. From afar a flat part has a single cosine: if
     // an edge between strata crosses it, only a strip of it lies in one of them.
     if (seen.hits[i] < kEnough || (isFar && seen.of[i].value < kStrip)) continue;
     char where[96];
@@ -243,7 +244,7 @@ void CheckDistances(const SuiteSubject& subject, const SuiteOptions& options, Su
       density = 1;
     }
     if (!sample || !other || IsBlack(*other)) continue;
-    // Receivers are rounded, so that they are not quite in the photon's direction.
+    // Receivers are rounded, so that they are not exactly in the photon's direction.
     const double nearest = std::min(away, 1.0) * radius;
     if (4e-7 * (glm::length(Point3d(photon->position)) + nearest) > 1e-5 * nearest) continue;
     const double fall = isPoint ? Sqr(static_cast<double>(other->distance) / static_cast<double>(sample->distance)) : 1;

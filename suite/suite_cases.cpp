@@ -33,8 +33,7 @@ bool HasParameter(const LightType& type, const std::string& name) {
                      [&](const ParameterInfo& info) { return info.name == name; });
 }
 
-// The parameters that name input files of the suite, with each file replaced by another of its kind; nullopt if none
-// does.
+// The parameters with each input file of the suite replaced by another of its kind; nullopt if they name none.
 std::optional<ParameterList> WithOtherFiles(const ParameterList& parameters) {
   std::vector<Parameter> changed;
   for (Parameter parameter : parameters.All()) {
@@ -63,8 +62,8 @@ struct SuiteCase {
   bool keepsAngles = true;
   bool isSharp = true;  // power to half a per cent; two per cent otherwise
   bool isThorough = false;
-  bool looksClosely = false;   // every n-th of the thorough cases, as the options say
-  bool isOfItsBlock = false;   // one case of each block, which is always looked at
+  bool looksClosely = false;   // every n-th of the thorough cases, by the options
+  bool isOfItsBlock = false;   // one case of each block, which is always checked thoroughly
   bool isEditedByAll = false;  // by each parameter of its type
 };
 
@@ -123,7 +122,7 @@ void SuiteRun::Add(const LightType& type) {
       AddCases(light, static_cast<int>(index), index);
       continue;
     }
-    // The first block on every shape, the others on every third, in turn: together they cover what can be combined.
+    // The first block on every shape, the others on every third, in turn: together they cover the combinations.
     const std::vector<NamedShape> shapes = suite::Shapes();
     for (size_t i = 0; i < shapes.size(); ++i) {
       const NamedShape& shape = shapes[i];
@@ -200,7 +199,7 @@ void SuiteRun::CheckParametersOf(const SuiteCase& suiteCase, const SuiteSubject&
 
 // `refusal`: receives the error of a light that refuses the shape.
 SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) const {
-  // Each case has its own, because these record their use and cases run in parallel.
+  // Each case has its own lists, because these record their use and cases run in parallel.
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const TextureLibrary textures({}, Transform(), diagnostics);
   const ParameterList parameters = *suiteCase.parameters;
@@ -225,21 +224,22 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) co
   subject.model = model.get();
   subject.context.transform = &placed;
   subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
-  // A portal stands in world space: its size is the same wherever the light is placed.
+  // A portal is given in world space: its size is the same wherever the light is placed.
   if (parameters.Find("portal")) subject.context.scene.radius = std::max(subject.context.scene.radius, 4.0f);
   subject.context.bidirectional = true;
   std::unique_ptr<Light> light;
   try {
     light = MakeLight(*suiteCase.type, parameters, build);
   } catch (const Error& error) {
-    // A type may be for some shapes alone.
+    // A type may support only some shapes.
     if (!suiteCase.shape) throw;
     refusal = error.what();
     return report;
   }
   subject.light = light.get();
   if (IsAtInfinity(light->Kind()) && suiteCase.type->name != "portal") {
-    // The scene is not where the light is placed, nor of a size that follows from it. A portal is a window of it.
+    // The scene has another position than the light, and a size that does not follow from it. A portal is a window of
+    // the scene.
     constexpr std::array<float, 4> kSizes = {1.0f, 0.4f, 15.0f, 2.2f};
     BoundingSphere& scene = subject.context.scene;
     scene.radius *= kSizes[std::hash<std::string>()(suiteCase.caseName) % kSizes.size()];
@@ -259,8 +259,8 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) co
   return report;
 }
 
-// A type may be for some shapes alone: it refuses them with every sample of parameters, and accepts another one.
-// `refusals`: by case; empty: accepted.
+// A type may support only some shapes: it refuses the others with every sample block. `refusals`: by case; empty:
+// accepted.
 void SuiteRun::AddRefusals(const std::vector<std::string>& refusals, SuiteReport& report) const {
   const auto exists = [&](const auto& isWanted) {
     for (size_t k = 0; k < cases_.size(); ++k)

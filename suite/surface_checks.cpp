@@ -1,4 +1,4 @@
-// Properties of lights that are their own surface, as receivers see them: rays are traced to it.
+// Properties of lights that are their own surface at receivers: rays are traced to the surface.
 #include "suite/surface_checks.h"
 
 #include <cstdio>
@@ -58,7 +58,7 @@ Integrands SurfaceReceiverChecker::At(const Point3& P, const Vector3d& direction
   if (std::abs(cosine) > 1e-4) {
     ++compared_;
     cameraDiffers_ += CameraMismatch(subject_, hit, e).value_or(0.0) > 1e-4 ? 1 : 0;
-    // A surface of two sides may be dark on one, and be sampled there all the same.
+    // A two-sided surface may be dark on one side, and may nevertheless be sampled there.
     const bool isBack = bounds_ && !bounds_->twoSided && cosine * EmittingSide(*bounds_, found->normal) < 0;
     if (isBack && e && !IsBlack(*e)) leak_ = 1;
   }
@@ -71,7 +71,7 @@ std::optional<SurfaceHit> SurfaceReceiverChecker::Seen(const LightSample& sample
   const Vector3d direction = glm::normalize(Vector3d(sample.direction));
   const auto found = tracer_.Find(Point3d(P), direction, Point3d(sample.position));
   if (!found || !found->isFirst || std::abs(glm::dot(found->hit.normal, direction)) < kEdgeOn) return std::nullopt;
-  // Another part of the surface, beside which the ray passes the sample.
+  // The hit is on another part of the surface, next to the sample.
   const double scale = tracer_.Around().radius + 1e-2 * glm::length(Point3d(sample.position) - Point3d(P));
   if (glm::length(found->hit.position - Point3d(sample.position)) > 1e-2 * scale) return std::nullopt;
   return found->hit;
@@ -98,7 +98,7 @@ void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P,
   errors.multipliers = std::max(errors.multipliers, MultiplierMismatch(subject_, sample));
   const Vector3d direction = glm::normalize(Vector3d(sample.direction));
   const double cosine = std::abs(glm::dot(Vector3d(sample.normal), direction));
-  if (cosine < kFlat) return;  // its ray may miss it
+  if (cosine < kFlat) return;  // a ray to the sample may miss it
   errors.surface = std::max(errors.surface, SolidAngleToAreaMismatch(sample));
   const auto found = tracer_.Find(Point3d(P), direction, Point3d(sample.position));
   if (!found) {
@@ -190,7 +190,7 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
   std::string worst;
   const double p = quadrature.Test(directions, options_.samples, 48, &worst);
   probability("directions", p, worst);
-  // Close to a surface, most of the light may come from points that no sample has met. Neither the samples' mean nor
+  // Close to a surface, most of the light may come from points that no sample has hit. Neither the samples' mean nor
   // its error estimate is meaningful then.
   constexpr double kUnmet = 8;
   if (brightest_ <= kUnmet * brightestMet_) {
@@ -275,7 +275,7 @@ void CheckIntersection(const SuiteSubject& subject, const SurfaceTracer& tracer,
     const auto next = hitOf(ray, beyond, kInfinite);
     return next && !(next->t > beyond) && note("a ray with tMin %g is hit at %g", beyond, next->t);
   };
-  // Beyond the box, too: a surface that is larger is hit there.
+  // Also beyond the box, to hit a surface that is larger than its box.
   const auto across = [](Rng& from) { return 1.5 * static_cast<double>(from.NextFloat()) - 0.25; };
   for (int i = 0; i < kLines; ++i) {
     LocalRay ray;

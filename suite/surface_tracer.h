@@ -1,4 +1,4 @@
-// A light's own surface in render space, by ray tracing, in double. The suite knows nothing else of its shape.
+// A light's own surface in render space, by ray tracing, in double: all that the suite uses of its shape.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -30,7 +30,7 @@ class SurfaceTracer {
   };
   std::optional<Found> Find(const Point3d& origin, const Vector3d& direction, const Point3d& position) const;
 
-  // ∫ f dA over the surface in `cells` of its box in its own space: f(hit) of all points that random lines meet. A line
+  // ∫ f dA over the surface in `cells` of its box in its own space: f(hit) of all points that random lines hit. A line
   // that enters the box at a uniform point in a cosine-distributed direction is one of the uniform measure of all
   // lines, so that ∫_A f dA is half the box's area times the mean of the sum over a line's hits [Santaló04 §14.7].
   std::vector<Estimate> IntegrateOver(size_t cells, const std::function<size_t(const SurfaceHit&)>& cellOf,

@@ -1,4 +1,4 @@
-// The suite's results as a person reads them: one verdict for each light and property, over all its cases.
+// Summary of the suite's results: one verdict for each light and property, over all its cases.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct LightVerdict {
   std::string light, property;
   size_t cases = 0;
   bool passed = true;  // in every case
-  SuiteResult worst;   // the case that is nearest to failing, or failed by most
+  SuiteResult worst;   // the case that is nearest to failing, or that fails most clearly
 };
 
 // One line that explains the property of the verdict.

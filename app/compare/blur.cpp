@@ -37,9 +37,9 @@ void Blur::Add(const Blur& other, double weight) {
 
 namespace {
 
-constexpr size_t kOfOthers = 2;  // pictures left for the divisor when two are multiplied
+constexpr size_t kOfOthers = 2;  // pictures that remain for the divisor when two are multiplied
 
-// Differences of pictures, and what their products are relative to.
+// Differences of pictures, and the divisors of their products.
 class Differences {
  public:
   Differences(std::span<const Image* const> wide, std::span<const Image* const> narrow) : wide_(wide), narrow_(narrow) {
@@ -51,7 +51,7 @@ class Differences {
   }
 
   // The mean product of the differences i and j, and of its quotient by the neighbourhoods in all other pictures. These
-  // are independent of both factors, so that without a bias the expectation is 0 whatever the noise.
+  // are independent of both factors, so that without a bias the expectation is 0 for any distribution of the noise.
   struct Product {
     double mse = 0, relMse = 0;
   };
@@ -101,7 +101,7 @@ class Differences {
   Image sum_;
 };
 
-// Mean over pairs, and over those without each of the items.
+// Mean over pairs, and over the pairs without each of the items.
 struct MeanOfPairs {
   size_t items;
   double all = 0;
@@ -155,7 +155,7 @@ Blur DifferenceOfRadii(std::span<const Image* const> wide, std::span<const Image
   return blur;
 }
 
-// The integral of RadiusScale over the samples, each of which reaches half a sample to both sides.
+// The integral of RadiusScale over the samples, each of which extends half a sample to both sides.
 double RadiusOfSamples(uint32_t first, int samples) {
   const double alpha = std::get<double>(photon_settings::kAlpha.fallback);
   const double power = 0.5 * (alpha + 1), begin = static_cast<double>(first) + 0.5;

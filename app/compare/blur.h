@@ -14,22 +14,24 @@ namespace lampyr {
 
 // An amount of blur.
 struct Blur {
-  double relMse = 0;       // estimate of what is above noise, at least 0
+  double relMse = 0;       // estimate above the noise, at least 0
   double relMseLimit = 0;  // upper bounds at 95 % confidence, one-sided
   double mseLimit = 0;
   double meanLimit = 0;     // of the absolute difference of the picture's mean, relative to it
   bool isFromZero = false;  // the estimate is significantly above 0, p < 0.01
 
-  // The relative error of the blur (root of relMSE): the estimate, or, of a blur that is not told from noise, its
-  // bound.
+  // The relative error of the blur (root of relMSE): the estimate, or its upper bound for a blur that is not
+  // significant.
   double RelativeError() const;
-  // That of the mean of pictures: errors are added up, as all have the same sign in a place.
+  // Adds the blur of another picture to that of a mean of pictures: errors are added, because they have the same sign
+  // at each pixel.
   void Add(const Blur& other, double weight);
   Blur Times(double factor) const;  // of the error; squares by its square
 };
 
 // The difference D between independent pictures wide[k] and narrow[k], which differ in the radius alone; at least four
-// of each (else an Error). What is common to all k is bias, the rest is noise. Relative to neighbourhoods of pixels.
+// of each (otherwise an Error). The part common to all k is bias, the rest is noise. Relative to neighbourhoods of
+// pixels.
 Blur DifferenceOfRadii(std::span<const Image* const> wide, std::span<const Image* const> narrow);
 
 // The mean radius of the samples `first` … `first` + `samples` - 1 of a pixel over that of sample 0, with the default

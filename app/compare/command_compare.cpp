@@ -50,7 +50,7 @@ double LongestRender(const ComparisonPlan& plan, const Pilot& pilot) {
   return std::max(ofTimes, ofSamples);
 }
 
-// The pilot of a compared integrator, or of the integrator that it is a variant of; null: it was not tried.
+// The pilot of a compared integrator, or of the integrator that it is a variant of; null: none was made.
 const Pilot* PilotOf(const ComparisonPlan& plan, const std::vector<Pilot>& pilots, const std::string& name) {
   const auto find = [&](const std::string& integrator) -> const Pilot* {
     const auto found =
@@ -67,14 +67,14 @@ double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilot
     if (const Pilot* pilot = PilotOf(plan, pilots, name)) longest = std::max(longest, LongestRender(plan, *pilot));
   }
   if (longest > 0) return longest;
-  // None of those that were tried.
+  // No pilot was made of these integrators.
   for (const Pilot& pilot : pilots) longest = std::max(longest, LongestRender(plan, pilot));
   return longest;
 }
 
 // Throws a UsageError if the reference, whose noise is known, is noisier than all renders that would be measured
-// against it, when the pilots show this already, before the work. A render that misses light has an error in addition
-// to its noise, and one that blurs that of its blur; what has no pilot may have any error.
+// against it, and the pilots show this before the work starts. A render that misses light has an error in addition to
+// its noise, and so has one that blurs; a render without a pilot may have any error.
 void CheckReferenceIsFinerThanRenders(const Reference& reference, const ComparisonPlan& plan,
                                       const std::vector<Pilot>& pilots) {
   for (const std::string& name : plan.integrators) {
@@ -88,7 +88,7 @@ void CheckReferenceIsFinerThanRenders(const Reference& reference, const Comparis
                    "option out to have one made");
 }
 
-// Progress bar over stages of the work. Of the stages before and after the current one only their share is known.
+// Progress bar over stages of the work. For stages other than the current one only their share is known.
 class Stages {
  public:
   explicit Stages(bool quiet) : progress_(quiet) {}
@@ -152,8 +152,9 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   return reference;
 }
 
-// Checks the memory for a picture per milestone of each repeat, with R, G and B, and for work on a few of them; before
-// there are such pictures, for the reference. `mayMerge`: one that merges photons may be made, of up to four radii.
+// Checks the memory for a picture per milestone of each repeat, with R, G and B, and for work on a few of them; and,
+// before those pictures exist, for the reference. `mayMerge`: a reference by merged photons may be rendered, of up to
+// four radii.
 void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan, bool mayMerge) {
   const double milestones = static_cast<double>(plan.times.size() + plan.sampleCounts.size());
   const double images = static_cast<double>(plan.integrators.size()) * milestones * plan.repeats;
@@ -177,7 +178,8 @@ void WritePictures(const std::filesystem::path& folder, const ComparisonResults&
 
 void WriteResults(const CompareOptions& options, const std::filesystem::path& folder, const ComparisonPlan& plan,
                   const ComparisonResults& results) {
-  // What cannot be written takes nothing else with it: the first failure is thrown when all is told.
+  // A file that cannot be written must not prevent the others: the first failure is thrown after all have been
+  // reported.
   std::exception_ptr failure;
   const auto attempt = [&failure](const auto& write) {
     try {
@@ -214,7 +216,7 @@ void WriteResults(const CompareOptions& options, const std::filesystem::path& fo
   if (failure) std::rethrow_exception(failure);
 }
 
-// The description of the run that is known before anything is measured.
+// The part of the description of the run that is known before any measurement.
 ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
   ComparisonResults results;
@@ -257,7 +259,7 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
       }
     }
   }
-  // The reference has no bias, whatever the scene or the command line asks for.
+  // The reference is unbiased, whatever the scene or the command line specifies.
   BuiltScene unbiased = loaded.built;
   MakeConsistent(unbiased.settings.values);
   const ComparedScene referenceScene(unbiased, results.threads, FinishOnInterrupt(), options.ofProcessor);

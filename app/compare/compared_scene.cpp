@@ -71,7 +71,7 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
     if (isWhole) afterPass(seconds);
     if (HasGivenUpWork()) (void)run.release();
     if (!isWhole || interrupted_.load()) throw ComparisonInterrupted{};
-    // A sample that would exceed the time is omitted if it would exceed it by more than half of its duration.
+    // A sample that would exceed the time by more than half of its duration is omitted.
     const double perSample = (seconds - secondsBeforeSamples) / outcome.samplesPerPixel;
     while (nextTime < times.size() && seconds + 0.5 * perSample >= times[nextTime]) {
       show(nextTime);

@@ -18,8 +18,8 @@ struct ComparisonInterrupted {};
 
 class ComparedScene {
  public:
-  // `built` must outlive it. `ofProcessor`: seconds are those of the processor, over the threads, instead of the
-  // clock's; other work on the machine then changes little.
+  // `built` must outlive this. `ofProcessor`: times are processor times over the threads, instead of wall-clock times;
+  // other work on the machine then has little influence.
   ComparedScene(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted, bool ofProcessor = false)
       : built_(built), threads_(threads), interrupted_(interrupted), ofProcessor_(ofProcessor) {}
 
@@ -39,14 +39,16 @@ class ComparedScene {
 
   // Renders until the last of `times` (seconds) and `sampleCounts`, both ascending, and takes a snapshot at each. The
   // time of snapshots is not counted.
-  // `firstSample`: index of the first sample of a pixel; merging radii are those of a render that has come so far.
-  // `secondsBefore`: counts as passed when the render begins; ChoiceSeconds where the time of a user is measured.
+  // `firstSample`: index of the first sample of a pixel; merging radii are those of a render that has reached this
+  // sample.
+  // `secondsBefore`: time that counts as elapsed at the start of the render; ChoiceSeconds to measure the time of a
+  // user.
   // Pictures of an integrator whose name ends in ":denoise" are denoised; the time of that and of its features counts.
   // Throws ComparisonInterrupted.
   void Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
               const std::vector<int>& sampleCounts, const AtMilestone& atMilestone, const AfterPass& afterPass,
               uint32_t firstSample = 0, double secondsBefore = 0) const;
-  // The time in which "auto" chose its integrator, which everybody who renders with it pays; 0 for other integrators.
+  // The time in which "auto" chose its integrator, which is part of every render with it; 0 for other integrators.
   double ChoiceSeconds(const std::string& integrator) const;
 
  private:

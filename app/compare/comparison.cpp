@@ -57,7 +57,7 @@ std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optiona
   return estimate;
 }
 
-// Factors of an error that bound what the blur of the reference leaves unknown.
+// Factors of an error that bound its uncertainty by the blur of the reference.
 //
 // An integrator's own bias B and the blur b of the reference make up the part of the error that all repeats have in
 // common, s² = |B - b|², so that B is within s - b … s + b.
@@ -99,7 +99,7 @@ std::vector<unsigned char> ErrorPicture(const Image& image, const Reference& ref
   return EncodePng(image.width, image.height, rgb);
 }
 
-// Rounding errors, which are the same in all repeats and must not count as a systematic error of an integrator.
+// Rounding errors: they are the same in all repeats and must not count as a systematic error of an integrator.
 constexpr double kRoundingOfMean = 1e-5, kRoundingOfRelMse = 1e-10;
 
 // The part of relMSE that is common to all repeats; its error by the jackknife (each repeat left out in turn). A part
@@ -141,7 +141,7 @@ std::optional<Estimate> NoiseOfParts(const CommonError& error) {
   return Root(static_cast<const Estimate&>(JackknifeOf(error.varying, error.varyingWithout)));
 }
 
-// Root mean square of what the renders state; nullopt: they state no parts.
+// Root mean square of the errors that the renders state; nullopt: they state none.
 std::optional<ErrorParts> MeanStatement(const std::vector<ComparedRun>& runs) {
   ErrorParts squares;
   for (const ComparedRun& run : runs) {
@@ -202,8 +202,9 @@ struct CurvePoint {
 };
 
 // Time to reach an error: interpolated on the measured curve; beyond it, extrapolated from the nearest point by the law
-// of independent samples, relMSE - floor ~ 1/time. `floor`: the part of relMSE that stays however many samples are
-// taken. Blur is no such part, it falls too, but more slowly than 1/time: extrapolated times of what blurs are rough.
+// of independent samples, relMSE - floor ~ 1/time. `floor`: the part of relMSE that no number of samples reduces. Blur
+// is not part of it: it falls, too, but more slowly than 1/time, so that extrapolated times of integrators that blur
+// are rough.
 TimeToError FindTime(const std::vector<CurvePoint>& curve, double floor, double error) {
   TimeToError result;
   result.error = error;
@@ -314,7 +315,7 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
   for (const std::string& name : plan.integrators) runs.push_back({name, {}});
   const size_t milestones = plan.times.size() + plan.sampleCounts.size();
   const double steps = static_cast<double>(plan.repeats) * static_cast<double>(runs.size());
-  double lastSeconds = plan.times.empty() ? 0 : plan.times.back();  // of one render, learnt when samples are counted
+  double lastSeconds = plan.times.empty() ? 0 : plan.times.back();  // of one render, known once samples are counted
   int whole = 0;
   try {
     for (; whole < plan.repeats; ++whole) {

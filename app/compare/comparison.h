@@ -10,7 +10,7 @@ namespace lampyr {
 
 struct ComparisonPlan {
   std::vector<std::string> integrators;
-  std::string autoIntegrator;     // what "auto" is
+  std::string autoIntegrator;     // the integrator that "auto" chose
   std::vector<double> times;      // seconds, rising
   std::vector<int> sampleCounts;  // per pixel, rising
   int repeats = 5;                // at least 2

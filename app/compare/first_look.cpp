@@ -17,8 +17,8 @@ namespace lampyr {
 
 namespace {
 
-// At the error probability of one block of one pair of integrators, a t-test of four parts asks for a difference of 150
-// standard errors, and one of eight for 17.
+// At the error probability of one block of one pair of integrators, a t-test of four parts requires a difference of 150
+// standard errors, and one of eight 17.
 constexpr int kPilotParts = 8;
 
 // Means of the whole picture and of the blocks of a grid over it, for each part of a pilot.
@@ -27,14 +27,14 @@ struct PilotRun {
   std::vector<double> means;
   std::vector<std::vector<double>> blocks;
   bool isHinted = false;
-  double missing = 0;               // part of the light that it is known not to find
+  double missing = 0;               // fraction of the light that it is known to miss
   bool isBlurred = false;           // by photons
   std::vector<Image> wide, narrow;  // of the parts, if it is blurred: at two radii
   double ratioOfRadii = 0.5;
 
   // relMSE of noise and blur.
   double TotalError() const { return pilot.relMse + pilot.bias * pilot.bias; }
-  // That of a render `longer` times as long: noise falls, blur hardly does.
+  // Total error of a render `longer` times as long: noise falls, blur hardly does.
   double TotalErrorOf(double longer) const { return pilot.relMse / longer + pilot.bias * pilot.bias; }
 };
 
@@ -91,8 +91,8 @@ bool FindsMore(const PilotRun& other, const PilotRun& run, double byChance) {
   const double scale = MomentsOf(other.means).mean;
   if (IsBrighter(other.means, run.means, byChance, kRounding * scale)) return true;
   const int side = other.isBlurred || run.isBlurred ? kSideOfBlurredBlock : 1, across = kGrid / side;
-  // In a block that sees little but the tail of the pixel filter, integrators that do not splat may find nothing at
-  // all.
+  // In a block where only the tail of the pixel filter receives light, integrators that do not splat may find nothing
+  // at all.
   const double least = kNegligibleLight * scale * across * across;
   for (int block = 0; block < across * across; ++block) {
     if (IsBrighter(PartsOfBlock(other, block, side), PartsOfBlock(run, block, side),
@@ -102,8 +102,8 @@ bool FindsMore(const PilotRun& other, const PilotRun& run, double byChance) {
   return false;
 }
 
-// The light that `run` may miss: its differences from `complete`, relative, as a mean square over blocks. They include
-// the noise of both, so that the expectation is not below what is missing.
+// An upper estimate of the light that `run` may miss: its relative differences from `complete`, as a mean square over
+// blocks. They include the noise of both, so that the expectation is not below the missing light.
 double LightThatMayBeMissing(const PilotRun& run, const PilotRun& complete) {
   constexpr int across = kGrid / kSideOfBlurredBlock;
   const double floor = 1e-3 * MomentsOf(complete.means).mean;
@@ -147,13 +147,13 @@ bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, b
 // The least advantage, as a ratio of relative errors, for which blur is accepted.
 constexpr double kWorthBlur = 3;
 
-// The largest ratio of squared errors that is accepted of a reference that has all light, over one that is known to
-// miss some. Errors are relative to the reference: where it lacks light, they are many times too large for all that
-// find it.
+// The largest ratio of squared errors that is accepted of a reference with all light, over one that is known to miss
+// some. Errors are relative to the reference: where it lacks light, they are many times too large for all integrators
+// that find it.
 constexpr double kWorthLight = 4;
 
-// The better of the best that does not blur and the best that does, for a render `longer` times as long as theirs;
-// null: none. Notes why.
+// The better of the best integrator that does not blur and the best that does, for a render `longer` times as long as
+// theirs; null: none. Notes the reason.
 PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred, double longer) {
   if (!blurred) return sharp;
   if (!sharp) {
@@ -216,7 +216,7 @@ std::vector<PilotRun> Candidates(const BuiltScene& built) {
     run.isHinted = !IntegratorHints(built.scene, settings.integrator).empty();
     runs.push_back(run);
   };
-  // Of those that gather photons, vcm has all techniques, and "auto" may have found which of them are worth their time.
+  // Of the integrators that gather photons, vcm has all techniques, and "auto" may have found the useful ones.
   for (const std::string& name : IntegratorNames()) {
     if (name == "vcm" || !GathersPhotons(name, built.settings.values)) add(name);
   }
@@ -224,7 +224,7 @@ std::vector<PilotRun> Candidates(const BuiltScene& built) {
   return runs;
 }
 
-// Notes what the pilot of "auto" knows of light that some of them cannot find.
+// Notes the light that, by the pilot of "auto", some of the integrators cannot find.
 void NoteMissingLight(const ComparedScene& scene, std::vector<PilotRun>& runs) {
   const auto isIt = [&](bool PilotRun::*flag) {
     return std::any_of(runs.begin(), runs.end(), [&](const PilotRun& run) { return run.*flag; });
@@ -235,7 +235,7 @@ void NoteMissingLight(const ComparedScene& scene, std::vector<PilotRun>& runs) {
     if (const PilotCandidate* candidate = known.Find(run.pilot.integrator)) run.missing = candidate->missing;
 }
 
-// Renders a part of a pilot: by an integrator that blurs, half of it at half the radius.
+// Renders a part of a pilot; for an integrator that blurs, half of it at half the radius.
 Image RenderPart(const ComparedScene& scene, PilotRun& run, int part, double seconds) {
   Image image;
   const auto render = [&](double time, uint32_t firstSample, uint64_t seed) {

@@ -14,7 +14,7 @@ namespace lampyr {
 // significantly darker than another's, anywhere, is excluded. Photons blur: an integrator that gathers them is chosen
 // only if no other finds all light, or if its error, noise and blur together, is at most a third of the noise of the
 // best of the others, or if all the others are known not to find some kinds of light (IntegratorHints) and in a render
-// of `referenceSeconds` may miss more than it blurs. Where the pilot of "auto" has seen such light, its error may be up
+// of `referenceSeconds` may miss more than it blurs. If the pilot of "auto" has found such light, its error may be up
 // to twice that of the others.
 std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, double referenceSeconds,
                              const ReferenceProgress& progress);

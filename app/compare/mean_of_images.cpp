@@ -5,7 +5,8 @@
 
 namespace lampyr {
 
-// Standard errors have the range of the values; variances of very bright or dim pictures leave that of floats.
+// Standard errors, because they have the range of the values; variances of very bright or dim pictures exceed that of
+// floats.
 const std::vector<std::string> kLayers = {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"};
 
 void MeanOfImages::Add(const Image& image) {
@@ -18,7 +19,7 @@ void MeanOfImages::Add(const Image& image) {
   for (size_t i = 0; i < Pixels(); ++i) {
     for (size_t c = 0; c < 3; ++c) {
       const double v = static_cast<double>(image.data[i * image.channels.size() + c]);
-      const double shifted = v - First(i, c);  // squares of what is left cancel less
+      const double shifted = v - First(i, c);  // squares of the remainders cancel less
       sums_[3 * i + c] += shifted;
       squares_[3 * i + c] += shifted * shifted;
     }

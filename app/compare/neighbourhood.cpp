@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kReach = 3;  // pixels to each side
 
-using Sums = std::array<double, 3>;  // R, G, B; squares leave the range of floats
+using Sums = std::array<double, 3>;  // R, G, B; in double, because squares exceed the range of floats
 
 // The mean over the neighbours of every item of a line, those beyond its ends left out.
 template <class At>

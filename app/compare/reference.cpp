@@ -40,7 +40,7 @@ std::string MetadataOf(const Image& image, const char* name) {
   return found == image.metadata.end() ? std::string() : found->second;
 }
 
-// Reads what KeepReference has written of parts and blur.
+// Reads the parts and the blur, as written by KeepReference.
 void ReadBlur(Reference& reference) {
   const std::string text = MetadataOf(reference.image, "lampyr.compare.blur");
   if (text.empty()) return;
@@ -196,7 +196,7 @@ class Level {
   int Parts() const { return all_.Count(); }
   double Radius() const { return radius_; }
   const Image& Mean() const { return mean_; }
-  // relMSE of the noise of the mean of that many parts, relative to neighbourhoods as the blur is.
+  // relMSE of the noise of the mean of this many parts, relative to neighbourhoods like the blur.
   double NoiseOfParts(int parts) const { return noise_ * Parts() / parts; }
 
   // Difference from the level of a smaller radius.
@@ -218,7 +218,7 @@ class Level {
   double noise_ = 0;
 };
 
-// The bias of a level, from the two that are nearest (blur.h).
+// The bias of a level, from the two nearest ones (blur.h).
 Blur BlurOfLevel(const std::vector<Level>& levels, size_t index) {
   const size_t wide = std::min(index, levels.size() - 2);
   const double q = levels[wide + 1].Radius() / levels[wide].Radius();
@@ -244,7 +244,7 @@ struct Combination {
   double TotalError() const { return noise + blur.relMse; }
 };
 
-// All that is rendered is kept if its blur allows it: the radii that give the least error, noise and blur.
+// Keeps all radii whose blur allows it: those that give the least error, noise and blur together.
 Reference CombineLevels(const std::vector<Level>& levels, const PartRenderer& renderer) {
   std::vector<Blur> blurs;
   std::vector<Image> means;
@@ -273,7 +273,7 @@ Reference CombineLevels(const std::vector<Level>& levels, const PartRenderer& re
 }
 
 Reference MakeMerged(PartRenderer& renderer) {
-  // Radii that change little within a part, and that can be halved three times before samples are out of 32 bits.
+  // Such that the radius changes little within a part, and can be halved three times before 32 bits are exceeded.
   constexpr uint32_t most = 1u << 12;
   const uint32_t first = std::clamp(static_cast<uint32_t>(renderer.Samples()), kSamplesToHalfRadius, most);
   std::vector<Level> levels;

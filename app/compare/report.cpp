@@ -111,7 +111,7 @@ const char* OriginText(ComparisonReference::Origin origin) {
   return "made";
 }
 
-// What merging of photons blurs in the reference.
+// Prints the blur of the reference by merged photons.
 void PrintBlur(const ComparisonReference& reference, std::string& text) {
   if (!reference.bias || reference.radius.value_or(0) == 0) return;
   text += Format("  photons are merged within %.2g of the first radius; the bias of this is an error of %s%s\n",
@@ -157,7 +157,7 @@ void PrintSnapshots(const ComparisonResults& results, std::string& text) {
   }
 }
 
-// "1.2 % (1.1 % to 1.4 %)", or with the upper bound alone if the value is not told from 0.
+// "1.2 % (1.1 % to 1.4 %)", or the upper bound alone if the value is not significant.
 std::string PercentWithInterval(const Estimate& estimate, bool isTold) {
   const auto percent = [](double value) { return Format("%.2g %%", 100 * value); };
   if (!isTold)

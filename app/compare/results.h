@@ -35,14 +35,14 @@ struct ComparedRun {
 // One integrator at one budget: means over the repeats. An error that does not exceed the reference's own noise and
 // blur is absent.
 struct ComparedSnapshot {
-  bool byTime = true;  // what the budget is of: seconds, or samples per pixel
+  bool byTime = true;  // kind of the budget: seconds, or samples per pixel
   double budget = 0;
   double seconds = 0;  // actual time: passes are not cut short
   double samplesPerPixel = 0, samplesPerSecond = 0;
   std::optional<Estimate> mse, relMse, efficiency, relEfficiency;  // efficiency: 1/(MSE · seconds)
   Estimate flip;
-  // The relative error (root of relMSE) in two parts, whose squares add up to relMSE: what all repeats have in common,
-  // and what differs between them. Absent if it is not above 0.
+  // The relative error (root of relMSE) in two parts, whose squares add up to relMSE: one common to all repeats, and
+  // one that differs between them. Absent if it is not above 0.
   SignificantEstimate bias;
   std::optional<Estimate> noise;
   std::optional<ErrorParts> stated;   // root mean square over the repeats
@@ -52,9 +52,9 @@ struct ComparedSnapshot {
 
 // Time at which the root of relMSE reaches `error`.
 struct TimeToError {
-  // Extrapolated: beyond what was measured, as if relMSE fell as 1/time; blur falls more slowly. Never: the systematic
-  // part alone is larger, of an integrator that does not blur. Unresolved: no error was above the reference's own noise
-  // and blur.
+  // Extrapolated: beyond the measurements, as if relMSE fell as 1/time; blur falls more slowly. Never: the systematic
+  // part alone is larger, for an integrator that does not blur. Unresolved: no error was above the reference's own
+  // noise and blur.
   enum class Kind { Measured, Extrapolated, Never, Unresolved };
   double error = 0;
   Kind kind = Kind::Never;
@@ -94,14 +94,14 @@ struct ComparisonReference {
   // ones) and is not subtracted from measured errors.
   bool noiseIsLimit = false;
   // Relative error (root of relMSE) by the blur of merged photons; 0 for integrators that merge none, absent if
-  // unknown. `biasIsLimit`: it is not told from noise, and this is its upper bound at 95 % confidence, one-sided.
+  // unknown. `biasIsLimit`: it is not significant, and this is its upper bound at 95 % confidence, one-sided.
   std::optional<double> bias;
   bool biasIsLimit = false;
-  // Radius of merging in the samples that are most of the reference, relative to that of an integrator's first sample;
-  // 0 for integrators that merge none, absent if unknown.
+  // Merging radius of most samples of the reference, relative to that of an integrator's first sample; 0 for
+  // integrators that merge none, absent if unknown.
   std::optional<double> radius;
 
-  // It has blur, so that errors are not resolved below its noise and blur.
+  // True if it has blur, so that errors are not resolved below its noise and blur.
   bool IsBlurred() const { return bias.value_or(0) > 0; }
 };
 
@@ -111,8 +111,8 @@ struct Pilot {
   double seconds = 0;
   int samplesPerPixel = 0;
   double mean = 0, relMse = 0;  // relMse of `seconds` of rendering, relative to neighbourhoods
-  double bias = 0;              // relative error (root of relMSE) by what it blurs, as far as it is above noise
-  bool isFlawed = false;        // it misses light, or its picture may: its noise is not all of its error
+  double bias = 0;              // relative error (root of relMSE) by blur, as far as it is above noise
+  bool isFlawed = false;        // it misses light, or may: its noise is not all of its error
   bool chosen = false;
   std::string note;  // in words, of any kind
 };
@@ -123,7 +123,7 @@ struct ComparisonResults {
   bool ofProcessor = false;  // seconds are the processor's, over the threads; otherwise the clock's
   ComparisonReference reference;
   std::vector<Pilot> pilots;
-  double lowestError = 0.001, highestError = 10;  // of the levels 0 and 255 of error pictures, in between by powers
+  double lowestError = 0.001, highestError = 10;  // levels 0 and 255 of error pictures; logarithmic between
   std::vector<ComparedIntegrator> integrators;
   std::vector<EfficiencyRatio> ratios;
   std::vector<std::pair<std::string, std::vector<unsigned char>>> pictures;  // PNG by key

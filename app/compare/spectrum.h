@@ -1,5 +1,5 @@
 // The error over spatial frequencies, in the form of the error spectrum ensemble of [Celarek19]: the power spectra of
-// the errors of several renders, averaged over rings of equal frequency; their mean, and how they spread over renders.
+// the errors of several renders, averaged over rings of equal frequency; their mean, and their spread over the renders.
 #pragma once
 
 #include <span>
@@ -17,10 +17,10 @@ struct SpectrumRing {
   double density = 0;        // mean over the renders
   double low = 0, high = 0;  // 10 % and 90 % of the renders are below it
   double deviation = 0;      // standard deviation over the renders
-  double common = 0;         // density of what the renders have in common: the bias
+  double common = 0;         // density of the part common to all renders: the bias
 };
 
-// From at least two independent renders. The error is taken relative to the reference as relMSE takes it, channel by
+// The spectrum from at least two independent renders. The error is relative to the reference as in relMSE, channel by
 // channel, so that, by Parseval's theorem, the sum of the shares is the mean relMSE of the renders. The picture is
 // continued periodically. `referenceNoise`: relMSE of the reference's own noise, which is subtracted as noise that is
 // independent from pixel to pixel. Rings are as wide as the lowest frequency, or 12 % of their own.

@@ -37,8 +37,8 @@ EditableScene ReadEditableScene(const DeskOptions& options, Diagnostics& diagnos
   }
 }
 
-// The films of the render, of the one before and of the next one; the picture, as it is developed, mixed, and the one
-// before it.
+// Checks the memory for the films of the render, of the one before and of the next one, and for the picture: developed,
+// mixed, and the one before it.
 void CheckDeskMemory(const BuiltScene& scene) {
   const RenderSettings& settings = scene.settings;
   const size_t layers = scene.scene.outputs->Layers().size();
@@ -55,19 +55,19 @@ void CheckDeskMemory(const BuiltScene& scene) {
                    ": give a smaller --resolution");
 }
 
-// Films and pictures are as large as those before them. Memory that the system has cleared once is kept for the next:
-// to clear a gigabyte again takes longer than a restart may.
+// Keeps freed memory in the process: new films and pictures have the sizes of the old ones, and having the system clear
+// a gigabyte again would take longer than a restart may.
 void KeepMemory() {
   (void)mallopt(M_MMAP_MAX, 0);
   (void)mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 }
 
-// Serves until a signal comes.
+// Serves until a signal arrives.
 void ServeUntilInterrupted(HttpServer& server, Desk& desk, const std::atomic<bool>& interrupted) {
   std::atomic<bool> hasEnded{false};
   std::thread watch([&] {
     constexpr auto kLook = std::chrono::milliseconds(50);
-    // Again, because a server that has not begun to serve does not stop.
+    // Repeated, because stopping a server that has not begun to serve has no effect.
     for (; !hasEnded.load(); std::this_thread::sleep_for(kLook)) {
       if (!interrupted.load()) continue;
       desk.End();

@@ -73,7 +73,7 @@ Json StatementJson(const EditableScene& scene, size_t statement) {
           {"parameters", parameters}};
 }
 
-// A whole number that is not negative; others would be cut to one.
+// A non-negative integer; the conversion would truncate other numbers.
 uint64_t WholeNumberIn(const Json& body, const char* name) {
   const Json& number = body.at(name);
   if (!number.is_number_unsigned()) throw Error(std::string("\"") + name + "\" is no whole number");
@@ -112,7 +112,7 @@ std::vector<Color> ByLayer(const LayerPlanes& planes, const std::vector<Fader>& 
   return byLayer;
 }
 
-// The scene's text and what it refers to.
+// The scene's text and the files that it refers to.
 std::vector<std::string> FilesOf(const SceneDescription& scene) {
   std::vector<std::string> files = scene.files;
   const std::vector<std::string> referenced = ReferencedFiles(scene);
@@ -185,7 +185,7 @@ class Desk::Requests {
   }
 
   std::vector<Color> Factors() const { return FactorsIn(body_, desk_.faders_.size()); }
-  // For a picture that may be of a render before faders were set into the lights.
+  // The factors for a picture, which may be of a render before faders were set into the lights.
   std::vector<Color> FactorsFor(const DeskPicture& picture) const {
     std::vector<Color> factors = Factors();
     const std::lock_guard lock(desk_.setting_);
@@ -239,7 +239,7 @@ class Desk::Requests {
     return ReplyWith({{"value", values(pixel.value, 1)}, {"interval", interval}});
   }
 
-  // Renders what the scene has become. `edited`: a statement that is told as it is now; null: none.
+  // Renders the edited scene. `edited`: a statement whose current values are part of the reply; null: none.
   HttpReply Restarted(const Json& edited = nullptr, const std::vector<std::string>& notes = {}) const {
     const double seconds = desk_.session_.Restart(desk_.scene_.Built());
     return ReplyWith({{"seconds", seconds},
@@ -290,7 +290,7 @@ class Desk::Requests {
 
   HttpReply Keep() const {
     const std::lock_guard lock(desk_.editing_);
-    // Places of statements are those that were read, and so is the picture.
+    // Locations of statements and the picture are of the files as read.
     if (HashOfFiles(desk_.files_) != desk_.hashOfFiles_)
       throw Error("the files of the scene have changed since the desk has read them: start it anew");
     const KeptFiles kept = lampyr::Keep(desk_.scene_, desk_.session_, desk_.faders_, Factors());

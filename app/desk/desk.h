@@ -1,4 +1,4 @@
-// The lighting desk: a scene, its render, and what the page asks of both.
+// The lighting desk: a scene, its render, and the requests of the page.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace lampyr {
 
 class Desk {
  public:
-  // `scene` has to outlive it.
+  // `scene` has to outlive this.
   Desk(EditableScene& scene, int mostSamples, int threads);
 
   // Answers a request of the page; may be called by several threads. `path`: below the token, such as "state".

@@ -56,7 +56,8 @@ bool IsColor(ParameterType type) {
   return type == ParameterType::Rgb || type == ParameterType::Spectrum || type == ParameterType::Blackbody;
 }
 
-// Names by which other statements or layers know the light, and names of files, are of the scene's file.
+// True for names by which other statements or layers refer to the light, and names of files: these are edited in the
+// scene's file.
 bool IsOfTheScene(const std::string& name) {
   static const std::set<std::string> names = {"name", "lightGroup", "coordsys", "filters", "linkingGroups"};
   return names.contains(name) || name.find("file") != std::string::npos;
@@ -104,7 +105,7 @@ void ShowDefault(const ParameterInfo& info, ShownParameter& shown) {
   }
 }
 
-// More are a list, which is edited in the scene's file.
+// Longer lists are edited in the scene's file.
 size_t MostValuesOf(const ParameterInfo& info) {
   switch (info.type) {
     case ParameterType::Point2:

@@ -10,9 +10,9 @@ namespace lampyr {
 
 namespace {
 
-constexpr size_t kBlock = 4096;  // pixels that are mixed at once: their sums stay in the cache
+constexpr size_t kBlock = 4096;  // pixels mixed at once: their sums fit the cache
 
-// Encoded values over x / (1 + x), which is fine where x is near 0 and ends where x does not.
+// Table of encoded values over x / (1 + x), which is fine for x near 0 and covers all x.
 constexpr size_t kSteps = size_t{1} << 16;
 using ScreenTable = std::array<uint8_t, kSteps>;
 
@@ -44,7 +44,7 @@ void Encode(const double* __restrict sums, float exposure, size_t count, uint32_
   constexpr float largest = 1e6f;
   for (size_t i = 0; i < count; ++i) {
     const float sum = static_cast<float>(sums[i]) * exposure;
-    const float x = sum > 0 ? std::min(sum, largest) : 0.0f;  // 0 where it is no number
+    const float x = sum > 0 ? std::min(sum, largest) : 0.0f;  // 0 for NaN
     steps[i] = static_cast<uint32_t>(static_cast<int32_t>(x / (1 + x) * static_cast<float>(kSteps)));
   }
 }

@@ -1,5 +1,5 @@
-// Mixing the layers of a picture for the screen: each times its factor, added up, exposed and tone-mapped. Planes of
-// floats, so that twenty layers of a full picture take some hundredths of a second.
+// Mixing the layers of a picture for the screen: each multiplied by its factor, summed, exposed and tone-mapped. Planes
+// of floats, so that twenty layers of a full picture take a few hundredths of a second.
 #pragma once
 
 #include <cstdint>
@@ -35,12 +35,12 @@ struct ScreenLook {
 };
 
 // Mixes pictures for the screen. A fader that moves changes one layer: the sums are kept, and only layers whose factors
-// have changed are read. Sums are doubles, and begun anew from time to time, so that what was added and taken away
-// again leaves no trace that the screen could show. May be called from several threads.
+// have changed are read. Sums are doubles, and are computed anew from time to time, so that rounding errors of terms
+// that were added and subtracted again are never visible. May be called from several threads.
 class ScreenMixer {
  public:
-  // 8 bits of R, G, B and alpha, sRGB, by rows from the top. `factors`: of each layer. `picture`: a number that other
-  // planes do not have.
+  // Returns 8 bits of R, G, B and alpha, sRGB, by rows from the top. `factors`: of each layer. `picture`: a number that
+  // identifies the planes.
   std::string Mix(const LayerPlanes& planes, uint64_t picture, const std::vector<Color>& factors,
                   const ScreenLook& look, int threads);
 
@@ -49,10 +49,10 @@ class ScreenMixer {
   std::vector<double> sums_;  // by channel and pixel
   std::vector<Color> factors_;
   uint64_t picture_ = 0;
-  int changes_ = 0;  // since the sums were begun
+  int changes_ = 0;  // since the sums were last computed anew
 };
 
-// One pixel, linear. `deviation`: of its mean; where it is known, which is while all factors are equal.
+// One pixel, linear. `deviation`: of its mean; known only while all factors are equal.
 struct MixedPixel {
   Color value{0.0f};
   Color deviation{0.0f};

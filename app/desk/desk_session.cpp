@@ -25,12 +25,12 @@ double SecondsSince(DeskClock::time_point start) {
   return std::chrono::duration<double>(DeskClock::now() - start).count();
 }
 
-// Longest pass, seconds: what is done between passes waits for it.
+// Longest pass, seconds: work between passes waits for it.
 constexpr double kLongestPass = 0.4;
-// Part of the time that pictures may take.
+// Fraction of the time that pictures may take.
 constexpr double kPictureShare = 0.25;
 
-// Mixing for the page comes before rendering. Threads that this one starts inherit it.
+// Lowers the priority of rendering below that of mixing for the page. Threads started by this one inherit it.
 void GiveWay() {
   constexpr int kNice = 10;
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
@@ -86,7 +86,7 @@ void DeskSession::Start(std::shared_ptr<Run> run) {
   changed_.notify_all();
 }
 
-// Ends the pass that is under way, if there is one. What the thread does besides it may go on.
+// Ends the current pass, if any. Other work of the thread may continue.
 void DeskSession::StopPass(std::unique_lock<std::mutex>& lock) {
   run_->isStale = true;
   changed_.notify_all();
@@ -96,15 +96,14 @@ void DeskSession::StopPass(std::unique_lock<std::mutex>& lock) {
   WithdrawStop();
 }
 
-// Makes an empty film for the next run, and lets go of the memory of the one before, if there was one, while others
-// work.
+// Makes an empty film for the next run, and frees the memory of the previous run, if any, in the background.
 void DeskSession::Recycle(std::shared_ptr<Run> run) {
   spare_ = std::async(std::launch::async, [scene = run_->scene] {
     const RenderSettings& settings = scene->settings;
     return std::make_unique<Film>(settings.width, settings.height, settings.crop, scene->scene.outputs->Names());
   });
   if (!run) return;
-  // Not waited for here: the threads that end may want the lock.
+  // Not waited for here: the ending threads may need the lock.
   ending_ = std::async(std::launch::async, [before = std::move(ending_), old = std::move(run)]() mutable {
     GiveWay();
     if (before.valid()) before.wait();
@@ -214,7 +213,7 @@ void DeskSession::Render(Run& run) {
   }
 }
 
-// Waits while there is nothing to render. True: there was something else to do.
+// Waits while there is nothing to render. True: there was other work.
 bool DeskSession::Waits(Run& run) {
   std::unique_lock lock(mutex_);
   const auto rests = [&] { return IsDone(run) || (isPaused_ && run.render->SamplesPerPixel() > 0); };

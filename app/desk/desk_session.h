@@ -1,5 +1,5 @@
-// The render behind the lighting desk: refines the picture pass by pass in a thread of its own, and starts anew when
-// the scene is edited.
+// The render behind the lighting desk: refines the picture pass by pass in a thread of its own, and restarts when the
+// scene is edited.
 #pragma once
 
 #include <condition_variable>
@@ -24,10 +24,10 @@ namespace lampyr {
 struct DeskPicture {
   LayerPlanes planes;
   uint64_t number = 0;   // counts the pictures of the session
-  uint64_t restart = 0;  // of the render that it is of
+  uint64_t restart = 0;  // of the render that it belongs to
   int samplesPerPixel = 0;
   double seconds = 0;        // of rendering
-  double relativeError = 0;  // at 95 % confidence; infinite where it is unknown
+  double relativeError = 0;  // at 95 % confidence; infinite if unknown
 };
 
 struct DeskState {
@@ -36,7 +36,7 @@ struct DeskState {
   int samplesPerPixel = 0;
   double seconds = 0, relativeError = 0;
   bool isPaused = false, isDone = false;
-  std::string failure;  // why nothing is rendered any more; "": all is well
+  std::string failure;  // why rendering has ended; "": it has not failed
 };
 
 class DeskSession {
@@ -44,29 +44,29 @@ class DeskSession {
   // `mostSamples`: per pixel. `threads`: of rendering and mixing.
   DeskSession(std::shared_ptr<const BuiltScene> scene, int mostSamples, int threads);
   ~DeskSession();
-  // Ends the render, and whatever waits for it. May be called by any thread, also more than once.
+  // Ends the render, and all waits for it. May be called by any thread, also more than once.
   void End();
 
-  // Renders another scene from now on. Returns when its first pass has begun; seconds that this took. Called by one
-  // thread at a time.
+  // Renders another scene from now on. Returns when its first pass has begun; the result is the time that this took, in
+  // seconds. Called by one thread at a time.
   double Restart(std::shared_ptr<const BuiltScene> scene);
   void Pause(bool pauses);
 
   DeskState State() const;
   // The latest picture, also of the scene before; null: none yet.
   std::shared_ptr<const DeskPicture> Picture() const;
-  // Waits until there is a picture of the current scene and after that of `number`, or the render has ended, or the
+  // Waits until there is a picture of the current scene with a number above `number`, or the render has ended, or the
   // time is over.
   void WaitForPicture(uint64_t number, double seconds) const;
-  // Calls `work` between two passes with the film and its number of samples per pixel, and waits for it. Throws what it
-  // throws; an Error if nothing has been rendered yet.
+  // Calls `work` between two passes with the film and its number of samples per pixel, and waits for it. Rethrows its
+  // exceptions; throws an Error if nothing has been rendered yet.
   using FilmWork = std::function<void(const BuiltScene& scene, const Film& film, int samplesPerPixel)>;
   void WithFilm(const FilmWork& work);
 
   int Threads() const { return threads_; }
 
  private:
-  // The render of one scene, in a thread of its own. What is said of `mutex_` is guarded by it.
+  // The render of one scene, in a thread of its own. Members marked `mutex_` are guarded by it.
   struct Run {
     std::shared_ptr<const BuiltScene> scene;
     std::unique_ptr<Integrator> integrator;
@@ -77,7 +77,7 @@ class DeskSession {
     bool isStale = false;       // mutex_: another scene is rendered; it ends
     bool isInPass = false;      // mutex_
     bool hasBegun = false;      // mutex_: its first pass
-    double pictureSeconds = 0;  // that the last picture took to be made
+    double pictureSeconds = 0;  // time to make the last picture
     double renderedSince = 0;   // seconds of rendering since then
     std::thread thread;
   };
@@ -107,9 +107,9 @@ class DeskSession {
   bool isEnding_ = false, isPaused_ = false;
   DeskState state_;
   std::shared_ptr<const DeskPicture> picture_;
-  // An empty film for the next run, because to make one may take longer than a restart may.
+  // An empty film for the next run: making one may take longer than a restart may.
   std::future<std::unique_ptr<Film>> spare_;
-  std::future<void> ending_;  // of the run before
+  std::future<void> ending_;  // end of the previous run
 };
 
 }  // namespace lampyr

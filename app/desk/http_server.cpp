@@ -24,7 +24,7 @@ std::string MakeToken() {
   return token;
 }
 
-// In a time that does not tell how much of both is equal.
+// Comparison in constant time: it does not reveal the length of the equal part.
 bool IsEqual(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -81,7 +81,7 @@ HttpServer::HttpServer(int port, std::function<HttpReply(const HttpRequest&)> an
   server.http.set_tcp_nodelay(true);
   constexpr size_t kManyRequests = 1000000;
   server.http.set_keep_alive_max_count(kManyRequests);
-  // Silent connections do not hold up the end, nor others for long.
+  // Idle connections must not delay the end, nor other connections for long.
   server.http.set_keep_alive_timeout(1);
   server.http.set_read_timeout(1);
   // Not SO_REUSEPORT, with which others could share the port.
@@ -89,7 +89,7 @@ HttpServer::HttpServer(int port, std::function<HttpReply(const HttpRequest&)> an
     const int yes = 1;
     (void)setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
-  // Those without the token are refused before their bodies are read.
+  // Requests without the token are refused before their bodies are read.
   server.http.set_pre_routing_handler([&server](const httplib::Request& request, httplib::Response& response) {
     const int refusal = server.Refusal(request);
     if (refusal == 0) return httplib::Server::HandlerResponse::Unhandled;

@@ -1,4 +1,4 @@
-// A server for one page on this machine. It answers nobody who does not know its token: a page of another site, another
+// A server for one page on this machine. It refuses requests without its token: from a page of another site, another
 // user, or another machine.
 #pragma once
 
@@ -18,7 +18,7 @@ struct HttpReply {
   int status = 200;
   std::string type = "text/plain";
   std::string body;
-  std::string header;  // of the name X-Lampyr; "": none
+  std::string header;  // value of X-Lampyr; "": absent
 };
 
 class HttpServer {

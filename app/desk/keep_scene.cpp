@@ -51,7 +51,7 @@ std::vector<StatementChange> AllChanges(const EditableScene& scene, const std::v
   return changes;
 }
 
-// Copies under names that are free.
+// Copies with unused names.
 struct FreeCopies {
   std::vector<CopiedFile> files;
   fs::path picture;
@@ -124,7 +124,7 @@ KeptFiles Keep(const EditableScene& scene, DeskSession& session, const std::vect
       FindFreeCopies(scene.Description().file, AllChanges(scene, EditsOf(scene, faders, factors)));
   KeptFiles kept;
   kept.notes = GlowsThatStay(faders, factors);
-  // Nothing is left behind if one of the files cannot be written: all are open before the first is committed.
+  // All files are open before the first is committed, so that nothing is left behind if one of them cannot be written.
   std::vector<std::unique_ptr<AtomicFile>> files;
   for (const CopiedFile& copy : copies.files) {
     AtomicFile& file = *files.emplace_back(std::make_unique<AtomicFile>(copy.path));

@@ -10,11 +10,11 @@ namespace lampyr {
 
 namespace {
 
-// Beyond so many standard deviations a Gaussian is left out.
+// Distance, in standard deviations, at which a Gaussian is cut off.
 constexpr float kBlurReach = 3;
-// So many texels are enough for a standard deviation: blurred images are kept no finer.
+// Texels per standard deviation of a blurred image: a finer grid adds no detail.
 constexpr float kBlurTexels = 16;
-// So that tints and sums stay finite.
+// Upper bound of tints and sums, which keeps them finite.
 constexpr float kLargestFactor = 1e18f;
 
 // The means over `count` equal parts of each of the lines, which lie `next` apart and have `size` entries `step` apart;
@@ -117,7 +117,7 @@ void BeamImage::Blur(float sigma, bool alongX) {
   }
 }
 
-// Between the middles of texels. Without tiling, what lies beyond the rim is the fill.
+// Interpolates between the centres of texels. Without tiling, points beyond the rim get the fill.
 Color BeamImage::Lookup(const Point2& place) const {
   float x = middle_.x + place.x * texelsPerLength_.x, y = middle_.y - place.y * texelsPerLength_.y;
   const auto width = static_cast<float>(width_), height = static_cast<float>(height_);

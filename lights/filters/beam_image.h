@@ -8,7 +8,7 @@ namespace lampyr {
 
 class BeamImage {
  public:
-  // Reads filename, width, height, tile, fill, blur, tint and where the plane is. Throws located Errors.
+  // Reads filename, width, height, tile, fill, blur, tint and the position of the plane. Throws located Errors.
   BeamImage(const ParameterList& parameters, const FilterBuildContext& build, const char* mode);
 
   Color Factor(const FilterEdge& edge) const {
@@ -24,13 +24,13 @@ class BeamImage {
   BeamWindow window_;
   Vector2 texelsPerLength_{0.0f};
   Vector2 middle_{0.0f};        // in texels, from the outer corner of the first
-  int width_ = 0, height_ = 0;  // of the texels, with a margin for what is blurred over the rim
+  int width_ = 0, height_ = 0;  // in texels, with a margin for the blur beyond the rim
   bool tiles_ = false;
   Color fill_{0.0f};
   std::vector<Color> texels_;
 };
 
-// The type of a filter that is nothing else.
+// The type of a filter that is a BeamImage and nothing else.
 FilterType BeamImageType(const char* name, const char* help, const char* mode);
 
 }  // namespace lampyr

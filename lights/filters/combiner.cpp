@@ -32,7 +32,7 @@ class CombinerFilter final : public LightFilter {
     const CombineMode mode = ReadCombineMode(parameters, "mode");
     for (const std::string& name : names) {
       FilterInstance child = build.find(name, where);
-      if (!child.filter) continue;  // it never changes anything: as if it were not there
+      if (!child.filter) continue;  // without effect
       if (isForAll) child.combineMode = mode;
       children_[static_cast<size_t>(child.combineMode)].push_back(std::move(child));
     }
@@ -79,7 +79,7 @@ class CombinerFilter final : public LightFilter {
 
   const std::vector<FilterInstance>& Children(CombineMode mode) const { return children_[static_cast<size_t>(mode)]; }
 
-  // A batch of one is what integrators ask for: room for more would cost more than the filters.
+  // Integrators filter batches of one: initialising arrays for more would cost more than the filters.
   void CombineAll(CombineMode mode, const FilterContext& context, const FilterSamples& samples) const {
     if (samples.count == 1) return CombineIn<1>(mode, context, samples);
     CombineIn<64>(mode, context, samples);
@@ -136,7 +136,7 @@ FilterType CombinerFilterType() {
   type.create = [](const ParameterList& parameters, const FilterBuildContext& build) -> std::unique_ptr<LightFilter> {
     return std::make_unique<CombinerFilter>(parameters, build);
   };
-  // The suite has filters of these names.
+  // The suite defines filters of these names (suite/filter_maker.h).
   type.samples = {"\"string filters\" [ \"suite-slot\" \"suite-fade, suite-ball\" \"suite-tint\" ]",
                   "\"string filters\" \"suite-fade, suite-ball\" \"string mode\" \"screen\""};
   return type;

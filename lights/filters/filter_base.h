@@ -74,7 +74,7 @@ struct FilterEdge {
   float distance;   // in lengths of `towards`; infinite
 };
 
-// A filter of the given factor: `Model` has `Color Factor(const FilterEdge&) const`.
+// A filter whose factor is that of `Model`, which has `Color Factor(const FilterEdge&) const`.
 template <class Model>
 class FilterWith final : public FilterBase {
  public:

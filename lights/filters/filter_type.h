@@ -18,7 +18,7 @@ class TextureLibrary;
 // Arguments of a filter's factory besides its parameters.
 struct FilterBuildContext {
   LightTransform transform;                  // the filter's own space, at shutter open
-  std::shared_ptr<const Motion> motion;      // null: stays
+  std::shared_ptr<const Motion> motion;      // null: static
   const TextureLibrary* textures = nullptr;  // images; null in tests that use none
   // A filter with a name defined before, for combiners. Throws an Error at `where` that suggests the nearest name.
   std::function<FilterInstance(const std::string& name, const FileLocation& where)> find;

@@ -34,7 +34,7 @@ class IntMultFilter final : public FilterBase {
     }
   }
 
-  // Saturation takes nothing of light that has the tint's colour already: no less than without it.
+  // At least the transmittance without the saturation: light that has the tint's colour already loses nothing to it.
   std::optional<float> GetRadianceModifier() const override {
     const auto through = [&](const Part& part) {
       Color white(1.0f);
@@ -46,7 +46,7 @@ class IntMultFilter final : public FilterBase {
 
  private:
   struct Part {
-    Color factor{1.0f};  // as it is applied, the saturation aside
+    Color factor{1.0f};  // as applied, without the saturation
     Color whole{1.0f};   // the same at full strength
     float strength = 1;
   };

@@ -7,8 +7,8 @@ namespace lampyr {
 
 struct FilterRegion {
   Point3 center{0.0f};
-  Vector3 half{0.0f};  // of the box, without the rounding
-  float radius = 0;    // of the rounding; with a box of no size: of the sphere
+  Vector3 half{0.0f};  // half extents of the box, without the rounding
+  float radius = 0;    // of the rounding; of the sphere if the box has no size
   float edge = 0;      // width of the soft rim, outwards
   float falloff = 1;   // exponent of the rim
   Color color{0.0f};   // the factor within

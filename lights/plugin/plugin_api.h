@@ -5,8 +5,8 @@
 //     lampyr::LightType RingLightType();                 lampyr_plugin(ring SOURCES plugin.cpp ring.cpp)
 //     LAMPYR_PLUGIN({.lights = {RingLightType()}})
 //
-// The macro defines the plugin's stamp (plugin_stamp.h) and its one C entry point: with the light itself, that is all.
-// tests/plugins/example is a whole plugin.
+// The macro defines the plugin's stamp (plugin_stamp.h) and its one C entry point. Nothing else is needed besides the
+// light itself. tests/plugins/example is a complete plugin.
 //
 // Symbol resolution: a plugin links no lampyr library. The lampyr that loads it exports all symbols of its core and
 // lights, including those it does not use itself, and the dynamic loader resolves the plugin against them. The process

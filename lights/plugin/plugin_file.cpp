@@ -1,5 +1,4 @@
-// ELF, 64 bit, in the byte order of this machine [TIS95]: the program headers say what is loaded and where the notes
-// are.
+// ELF, 64 bit, in the byte order of this machine [TIS95]: the program headers list the loaded segments and the notes.
 #include "lights/plugin/plugin_file.h"
 
 #include <elf.h>
@@ -22,7 +21,7 @@ constexpr Elf64_Half kMachine = EM_X86_64;
 #elif defined(__aarch64__)
 constexpr Elf64_Half kMachine = EM_AARCH64;
 #else
-constexpr Elf64_Half kMachine = EM_NONE;  // not known: the system's loader will say
+constexpr Elf64_Half kMachine = EM_NONE;  // unknown: left to the system's loader
 #endif
 
 class PluginFile {
@@ -31,7 +30,7 @@ class PluginFile {
     std::error_code code;
     if (!std::filesystem::exists(file, code)) Fail("expected a shared library, found no such file");
     if (std::filesystem::is_directory(file, code)) Fail("expected a shared library, found a folder");
-    // Opening a pipe could wait for ever.
+    // Opening a pipe could block forever.
     if (!std::filesystem::is_regular_file(file, code))
       Fail("expected a shared library, found something that is no file");
     stream_.open(file, std::ios::binary);
@@ -43,7 +42,7 @@ class PluginFile {
 
   std::optional<std::string> Stamp() {
     const Elf64_Ehdr header = ReadHeader();
-    // The table of sections is nothing that is loaded, but it comes last: without it, something was cut off.
+    // The section table is not loaded, but it is the last part of the file: if it is missing, the file is truncated.
     if (header.e_shoff > 0) RequireUpTo(header.e_shoff, uint64_t{header.e_shnum} * header.e_shentsize);
     std::optional<std::string> stamp;
     for (Elf64_Half i = 0; i < header.e_phnum; ++i) {

@@ -1,4 +1,4 @@
-// A plugin's file as it lies on disk, looked at before any of it is loaded. Private to the plugin loader.
+// Reads what the loader needs from a plugin's file before any of it is loaded. Private to the plugin loader.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace lampyr {
 
-// The stamp that the shared library carries (plugin_stamp.h); nullopt: it carries none. Throws an Error, with what was
-// expected and what was found, for a file that is not there or cannot be read, is no shared library, is one for another
-// machine, or has an end missing (loading that would end the process).
+// The stamp that the shared library carries (plugin_stamp.h); nullopt if it has none. Throws an Error, with the
+// expected and the actual property, for a file that does not exist or cannot be read, is no shared library, is one for
+// another machine, or is truncated (loading that would end the process).
 std::optional<std::string> ReadPluginStamp(const std::filesystem::path& file);
 
 }  // namespace lampyr

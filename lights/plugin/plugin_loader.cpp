@@ -99,7 +99,7 @@ class PluginLoader {
     type.create = Guarded(std::move(type.create), what);
   }
 
-  // The factory, with all that may come out of it turned into an Error.
+  // The factory, with every exception and a null result turned into an Error.
   template <class Made, class Build>
   auto Guarded(std::function<std::unique_ptr<Made>(const ParameterList&, const Build&)> create,
                const char* what) const {

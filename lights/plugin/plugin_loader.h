@@ -8,19 +8,19 @@
 
 namespace lampyr {
 
-// A plugin whose static constructors threw. The system's loader was left in the midst of its work and keeps other
-// threads waiting from then on: the process must end.
+// A plugin whose static constructors threw. The exception interrupted the system's loader, which blocks other threads
+// from then on: the process must end.
 class LoaderBroken : public Error {
  public:
   using Error::Error;
 };
 
-// Looks at the file and its stamp, resolves all of its symbols, and asks its entry point for the types. Throws an Error
-// that names the file, what was expected and what was found, when any of that does not hold or the plugin throws.
+// Checks the file and its stamp, resolves all of its symbols, and gets the types from its entry point. Throws an Error
+// that names the file, what was expected and what was found, if one of these steps fails or the plugin throws.
 //
-// The types' factories are made safe: whatever they throw, and a null that they return, becomes an Error that names the
-// statement of the scene and the plugin. (An Error of theirs that says where stays as it is.) The library is never
-// unloaded: code and tables of lights, filters and exceptions are in it.
+// The types' factories are wrapped: any exception, and a null result, becomes an Error that names the statement of the
+// scene and the plugin. (An Error of theirs that has a location is passed on unchanged.) The library is never unloaded,
+// because it contains the code and tables of lights, filters and exceptions.
 Plugin LoadPlugin(const std::filesystem::path& file);
 
 }  // namespace lampyr

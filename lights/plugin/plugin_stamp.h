@@ -2,9 +2,9 @@
 // of the standard library, and the layout of all types that cross the boundary. lampyr loads only plugins with its own
 // line.
 //
-// The line lies in the file as an ELF note (owner "lampyr", type 1): it is read from there before any code of the
-// plugin runs and before any of its symbols is looked up (plugin_file.h). A plugin that belongs to another lampyr is
-// thus told from one that is broken, whatever symbols it misses and whatever its static constructors would have done.
+// The line is stored in the file as an ELF note (owner "lampyr", type 1), and is read from there before any code of the
+// plugin runs and before any of its symbols is looked up (plugin_file.h). A plugin for another version of lampyr is
+// thus distinguished from a broken one, whatever symbols it lacks and whatever its static constructors would do.
 #pragma once
 
 #include <cstdint>

@@ -26,8 +26,8 @@ inline bool IsIdentity(const Affine& map) {
   return map.linear == glm::mat3(1.0f) && map.translation == Vector3(0.0f);
 }
 
-// dA_render / dA_local of a surface whose unit normal in render space is `normal`: |det M| / |Mᵀ n|. May be beyond the
-// range of float where lengths are not.
+// dA_render / dA_local of a surface whose unit normal in render space is `normal`: |det M| / |Mᵀ n|. It may leave the
+// range of float where lengths do not.
 inline double ExactAreaStretch(const Affine& toRender, const Normal3& normal) {
   const float scale = std::max(MaxAbsComponent(toRender.linear[0]),
                                std::max(MaxAbsComponent(toRender.linear[1]), MaxAbsComponent(toRender.linear[2])));

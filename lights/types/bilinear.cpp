@@ -72,7 +72,7 @@ class BilinearPatches {
   std::vector<CornerWeights> weights_;  // all above 0, or all 0 for a patch without area
 };
 
-// |∂p/∂u × ∂p/∂v|, scene units². In double: float has no squares of areas beyond 1e19.
+// |∂p/∂u × ∂p/∂v|, scene units². In double, because squares of areas above 1e19 overflow float.
 double ElementAt(const PatchGeometry& geometry, const Point2& p) {
   return glm::length(glm::cross(Vector3d(geometry.AlongU(p)), Vector3d(geometry.AlongV(p))));
 }
@@ -104,7 +104,7 @@ void BilinearPatches::SetPoint(uint32_t patch, const Point2& p, bool, EmittingPo
   point.positionError = Gamma(6) * glm::max(glm::max(Abs(geometry.p00), Abs(geometry.p10)),
                                             glm::max(Abs(geometry.p01), Abs(geometry.p11)));
   point.normal = OutwardNormal(*mesh_, patch, p);
-  point.uv = PatchUv(*mesh_, patch, p);  // a hit finds its parameters by them
+  point.uv = PatchUv(*mesh_, patch, p);  // from which a hit recovers its parameters
 }
 
 float BilinearPatches::Density(uint32_t patch, const Point2& p) const {
@@ -136,7 +136,7 @@ Point2 BilinearPatches::ParametersOf(uint32_t patch, const Point2& uv, const Poi
   return p;
 }
 
-// 16×16 midpoints.
+// Midpoint rule of 16 × 16 points.
 template <class Function>
 void BilinearPatches::ForElements(uint32_t patch, const glm::dmat3& linear, const EmissionImage*,
                                   const Function& f) const {
@@ -166,7 +166,7 @@ EmissionBounds BilinearPatches::Bounds(uint32_t patch, const LightTransform& tra
     const Normal3 n = SafeNormalize(transform.toLocal.NormalByInverse(local), bounds.axis);
     bounds.cosThetaO = std::min(bounds.cosThetaO, std::max(glm::dot(n, bounds.axis), -1.0f));
   }
-  // Folded, or with vertex normals that disagree about the outside.
+  // Folded patches, or vertex normals that disagree about the outer side: no bound.
   if (bounds.cosThetaO <= 0) bounds.cosThetaO = -1;
   return bounds;
 }

@@ -1,6 +1,6 @@
 // LightSource "cylinder" (UsdLux CylinderLight): the side of a cylinder along x, without caps, that emits outwards. The
-// texture goes around it: its left side begins at +y and it goes around by +z, its upper side is at +x. Radiance in
-// W/(m² sr).
+// texture is wrapped around it: its left edge is at +y, from where u runs towards +z; its upper edge is at +x. Radiance
+// in W/(m² sr).
 #include "lights/types/surface_facet.h"
 
 namespace lampyr {

@@ -1,5 +1,5 @@
-// LightSource "disk" (UsdLux DiskLight): a disk at z = 0 that emits along -z. The texture lies on the square around it,
-// upright as seen from where it shines: its left side at +x, its upper side at +y. Radiance in W/(m² sr).
+// LightSource "disk" (UsdLux DiskLight): a disk at z = 0 that emits along -z. The texture covers the square around the
+// disk and is upright as seen from the lit side: left edge at +x, upper edge at +y. Radiance in W/(m² sr).
 #include "lights/types/surface_facet.h"
 
 namespace lampyr {

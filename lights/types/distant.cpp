@@ -4,13 +4,13 @@
 // Without `angle`, L is the irradiance in W/m² of a surface that faces the light. With an angle of 2θ, L is the
 // radiance in W/(m² sr) of all directions within θ. `normalize` divides it by UsdLux's size factor, π sin²θ up to 90°
 // and π (2 - sin²θ) beyond, so that a small disk gives the irradiance of parallel light; under a transform that does
-// not keep angles, by that integral of the placed cone. `illuminance` makes it such that a facing surface receives that
-// times L.
+// not preserve angles, by the same integral over the placed cone. `illuminance` scales the light such that a facing
+// surface receives `illuminance` times L.
 //
-// The disk is a cone in local directions: under a transform that does not keep angles it becomes an ellipse. It enters
-// as w = 1 - cosθ, half the squared chord to the axis, so that nothing cancels; sampled uniformly in it.
-// A unit direction in float is only known to 1e-7: below an angle of 1e-3° the disk has no room for samples to differ,
-// and the light is rendered as parallel with the irradiance that the disk would give.
+// The disk is a cone in local directions; under a transform that does not preserve angles it becomes an ellipse. It is
+// expressed, and sampled uniformly, in w = 1 - cosθ, half the squared chord to the axis, to avoid cancellation. A unit
+// direction in float is accurate to 1e-7: below an angle of 1e-3° the samples cannot differ, and the light is rendered
+// as parallel with the irradiance that the disk would give.
 #include "lights/infinite_light.h"
 
 namespace lampyr {
@@ -123,8 +123,8 @@ class ConeSky {
   bool isSphere_ = false;
 };
 
-// Integrals over a cone of directions, as it is placed: of the cosine to its axis where that is positive (the factor
-// from radiance to the irradiance of a surface that faces the axis), and of the cosine's size.
+// Integrals over a cone of directions, as placed: of the cosine to its axis where that is positive (the factor from
+// radiance to the irradiance of a surface that faces the axis), and of the absolute cosine.
 struct ConeIntegrals {
   double facing = 0, size = 0;
 };

@@ -1,6 +1,6 @@
-// Light from all around: pbrt-v4's "infinite", and UsdLux's DomeLight, "dome". The same radiance in W/(m² sr)
-// everywhere, or an image. The two differ in their parameters and in how an image is turned: "infinite" has pbrt-v4's
-// +z up, "dome" OpenEXR's +Y up (sky_parameters.cpp).
+// Light from all directions: pbrt-v4's "infinite", and UsdLux's DomeLight, "dome". The radiance in W/(m² sr) is
+// constant or an image. The two types differ in their parameters and in the orientation of an image: "infinite" has
+// pbrt-v4's +z up, "dome" OpenEXR's +Y up (sky_parameters.cpp).
 #include "lights/infinite_light.h"
 #include "lights/types/portal_light.h"
 
@@ -16,9 +16,9 @@ std::unique_ptr<Light> MakeSkyLight(LightTypeFunction type, const ParameterList&
   return std::make_unique<InfiniteLightWith<EvenSky>>(type, parameters, sky.even);
 }
 
-// Four corners of a rectangle in world space, in order around it; the sky is where (corner 3 - corner 0) × (corner 1 -
-// corner 0) points to, as in pbrt-v4, so that they go counterclockwise as seen from inside. pbrt-v4's tolerances; what
-// they leave of a skew is taken out.
+// Four corners of a rectangle in world space, in order around it; the sky is on the side that (corner 3 - corner 0) ×
+// (corner 1 - corner 0) points to, as in pbrt-v4, so that they go counterclockwise as seen from inside. Tolerances are
+// pbrt-v4's; a skew within them is removed.
 PortalShape ReadPortalCorners(const ParameterList& parameters) {
   const FileLocation where = parameters.WhereOf("portal");
   const std::vector<Point3d> p = parameters.GetPoint3s("portal");

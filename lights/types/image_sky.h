@@ -46,7 +46,7 @@ class ImageSky {
     return {scale_ * texel.color, ToSolidAngle(texel.pdf, w)};
   }
 
-  // Luminous irradiance of a surface that faces what `transform` makes of the map's +z, before Scale.
+  // Luminous irradiance of a surface that faces the image of the map's +z under `transform`, before Scale.
   double UpperIlluminance(const LightTransform& transform) const;
 
  private:

@@ -8,8 +8,8 @@ namespace lampyr {
 
 namespace {
 
-// The outer normal of a triangle at barycentrics b, in the mesh's space: the winding's, turned by flipNormals, or the
-// side that the vertex normals decide. 0 for a triangle without area. The same rule as SurfacePoint::Ng.
+// The outer normal of a triangle at barycentrics b, in the mesh's space: that of the winding, flipped by flipNormals,
+// or on the side of the vertex normals. 0 for a triangle without area. The same rule as SurfacePoint::Ng.
 Normal3 OutwardNormal(const TriangleMesh& mesh, uint32_t triangle, const Vector3& b) {
   const auto& t = mesh.triangles[triangle];
   const Point3 &p0 = mesh.positions[t[0]], &p1 = mesh.positions[t[1]], &p2 = mesh.positions[t[2]];

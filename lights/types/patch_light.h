@@ -244,7 +244,7 @@ Color PatchLight<Patches>::PowerFor(const LightContext& context) const {
     return (isWhole ? wholePower_ : PowerOfOne(patch, built_, exitance_)) * emission_.PowerScale(*scaleSquared);
   }
   if (isWhole) return PowerOfAll(*context.transform, ExitanceTable(emission_, *context.transform));
-  // A table has hundreds of normals; one patch has few, and a triangle one.
+  // A table would need the exitance of hundreds of normals; one patch has few, and a triangle one.
   std::optional<Normal3> last;
   Color ofLast;
   return PowerOfOne(patch, *context.transform, [&](const auto& getNormal) {

@@ -1,4 +1,4 @@
-// A point that shines alike in all directions: intensity I in W/sr (pbrt-v4's "point"); shaped about its -z if asked.
+// A point light of equal intensity in all directions: I in W/sr (pbrt-v4's "point"); optionally shaped about its -z.
 #include "lights/types/shaped_point.h"
 #include "sampling/warp.h"
 
@@ -22,7 +22,7 @@ struct EvenProfile {
   bool Clip(const LightTransform&, const Point3&, const Point3&, const Vector3&, float&, float&) const { return true; }
 };
 
-// One line of the cache: a million of these are read at random.
+// One cache line, because a million of these may be read at random.
 static_assert(sizeof(PointLightWith<EvenProfile>) == 64);
 
 }  // namespace

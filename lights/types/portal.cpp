@@ -1,7 +1,7 @@
 // UsdLux's PortalLight as a light of its own: a width × height rectangle in the local xy plane through which the sky
-// shines, towards local -z. The sky stands still in world space, as the dome of which the portal is the window: it does
-// not turn with the portal. A sky that is itself turned is had by "infinite" with a portal, where the light's transform
-// turns the sky and the corners are points of world space.
+// shines, towards local -z. The sky is fixed in world space, like a dome to which the portal is the window, and does
+// not rotate with the portal. For a rotated sky, "infinite" has portals: there the light's transform rotates the sky,
+// and the corners are points of world space.
 #include "lights/types/portal_light.h"
 
 namespace lampyr {

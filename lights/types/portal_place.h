@@ -24,7 +24,7 @@ struct PortalPlace {
   bool isRectangle = true;
 
   PortalPlace() = default;
-  // `shape` placed by a map that may turn, mirror, scale or shear it.
+  // `local` placed by a map that may rotate, mirror, scale or shear it.
   PortalPlace(const PortalShape& local, const Affine& toRender) {
     const glm::dmat3 linear(toRender.linear);
     shape.corner = linear * local.corner + Vector3d(toRender.translation);

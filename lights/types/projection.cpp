@@ -1,5 +1,5 @@
-// A slide projector (pbrt-v4's "projection"): a point that throws an image along its +z. The intensity of a direction
-// is scale · texel, W/sr, without interpolation and without a cosine to any power.
+// A slide projector (pbrt-v4's "projection"): a point light that projects an image along its +z. The intensity of a
+// direction is scale · texel, W/sr, without interpolation and without a cosine to any power.
 //
 // The image fills a frustum of `fov` degrees across its shorter side. Seen from the light, looking along +z with +y up,
 // its top is up at +y and its left column at -x, as in pbrt-v4's left-handed space. Shaping multiplies it, about +z.

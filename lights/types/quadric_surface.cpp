@@ -31,7 +31,7 @@ Quadric QuadricSurface::In(const PlacedSurface& placed) const {
 
 double QuadricSurface::ComputeOwnDensity() const {
   const Quadric& q = quadric_;
-  // Products of floats of which none may leave the range of float.
+  // In double: intermediate products of floats may leave the range of float.
   const double wide = static_cast<double>(IsFlat() ? 0.5f * (q.radius - q.innerRadius) : q.radius);
   const double long_ = static_cast<double>(IsFlat() ? q.radius + q.innerRadius : high_ - low_);
   const double area = static_cast<double>(q.phiMax) * wide * long_;

@@ -24,7 +24,7 @@ class QuadricSurface {
   explicit QuadricSurface(const Quadric& quadric, bool planarUv = false);
   // Textured: the square is laid out so that the table's cells are ranges of uv.
   void SetTextured() { textured_ = true; }
-  // The far side is seen through the near one.
+  // For surfaces that rays may pass: their far side is visible through the near one.
   void LetRaysPass() { hidesFarSide_ = false; }
 
   const Quadric& Shape() const { return quadric_; }
@@ -63,7 +63,7 @@ class QuadricSurface {
   struct Arc {
     bool isThere = false;
     Vector2 towards{1, 0};  // unit, from the axis to P, in the quadric's own space
-    float turns = 0;        // of it, and half of the arc, both in turns
+    float turns = 0;        // angle of `towards`, and half the arc, both in turns
     float halfTurns = 0;
     float distance = 0, along = 0;  // of P from the axis, and its z
   };

@@ -37,7 +37,7 @@ Bounds3 RectSurface::BoundsOf(const PlacedSurface& placed) const {
 RectSurface::View RectSurface::ViewFrom(const Placed& placed, const Point3& P, bool twoSided) const {
   View view;
   if (!placed.isRectangle) return view;
-  // Relative to P, by way of the centre: its offset keeps its digits however far both are from the origin.
+  // Relative to P, by way of the offset of the centre, which keeps its precision however far both are from the origin.
   const Vector3 toMiddle = placed.toRender.translation - P;
   if (!twoSided && !(glm::dot(toMiddle, placed.flatNormal) < 0)) return view;
   const Vector3d middle(toMiddle);

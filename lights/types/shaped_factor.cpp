@@ -46,7 +46,7 @@ ShapedProfile::ShapedProfile(const IesProfile& profile, double angleScale, bool 
   SetLightThetas(thetas);
 }
 
-// The scaled angles, within [0, π]; where the clamp to [0, π] repeats a pole's value the profile goes on to the end.
+// The scaled angles, within [0, π]. Where the clamp to [0, π] repeats a pole's value, the profile continues to the end.
 void ShapedProfile::SetLightThetas(const std::vector<double>& thetas) {
   const double scale = static_cast<double>(scale_);
   const auto toLight = [scale](double theta) {

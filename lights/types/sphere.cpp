@@ -1,5 +1,5 @@
-// LightSource "sphere" (UsdLux SphereLight): a sphere that emits outwards. The texture is a lat-long one with +z above:
-// its left side begins at +x and it goes around by +y, as on Shape "sphere". Radiance in W/(m² sr).
+// LightSource "sphere" (UsdLux SphereLight): a sphere that emits outwards. The texture is latitude-longitude with +z at
+// the top: its left edge is at +x, from where u runs towards +y, as on Shape "sphere". Radiance in W/(m² sr).
 #include "lights/types/surface_facet.h"
 
 namespace lampyr {

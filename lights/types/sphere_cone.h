@@ -1,5 +1,5 @@
-// The cone of directions that a sphere fills, seen from outside: uniform solid-angle sampling that stays exact for
-// spheres tiny, far away or almost touched ([Shirley96], arranged so that nothing cancels).
+// The cone of directions that a sphere subtends from outside: uniform solid-angle sampling that stays exact for spheres
+// that are tiny, distant or almost touched ([Shirley96], rearranged to avoid cancellation).
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct SphereCone {
   float sinSquared = 0;  // of the half angle
   float oneMinusCosMax = 0;
 
-  // nullopt inside of the sphere, or so near to it that it fills a hemisphere but for rounding.
+  // nullopt inside the sphere, or so near to it that it subtends a hemisphere up to rounding.
   static std::optional<SphereCone> From(const Point3& P, const Point3& center, float radius) {
     const Vector3 toCenter = center - P;
     const float distance = glm::length(toCenter);

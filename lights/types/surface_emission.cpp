@@ -104,7 +104,7 @@ void SurfaceEmission::NarrowFlat(const LightTransform& transform, EmissionBounds
   // About an oblique axis a cone may reach both sides, and beyond its own angle from the normal.
   if (!shaped_ || !shaped_->IsAlong(transform, bounds.axis)) return;
   if (shaped_->IsBackDark() && bounds.twoSided) {
-    // The side of the primary axis shines, which may be the inner one.
+    // The emitting side is that of the primary axis, which may be the inner one.
     if (glm::dot(bounds.axis, shaped_->PrimaryAxis(transform)) < 0) bounds.axis = -bounds.axis;
     bounds.twoSided = false;
   }
@@ -115,8 +115,8 @@ void SurfaceEmission::NarrowFlat(const LightTransform& transform, EmissionBounds
   }
 }
 
-// Here and below the same variable is returned everywhere: it is then made in the caller's place, and a copy of what
-// was just written field by field stalls on store forwarding.
+// Here and below every return statement returns the same variable, so that it is constructed in the caller's storage
+// (NRVO): copying what was just written field by field stalls on store forwarding.
 std::optional<LightSample> SurfaceEmission::Sample(const LightContext& context, const Point3& P,
                                                    const EmittingPoint& point) const {
   std::optional<LightSample> sample;

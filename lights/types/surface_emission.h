@@ -3,8 +3,9 @@
 // density; the densities of direction are computed here.
 //
 // The surface emits on the side that its normal points to, or on both. Radiance in W/(m² sr) is a constant or a factor
-// times an image over the surface's uv, tinted and shaped (light_base.h, shaping.h). A ray that finds the light has
-// passed the cut-outs of the geometry; a sample and a photon have not, so these two carry the opacity as a factor.
+// times an image over the surface's uv, tinted and shaped (light_base.h, shaping.h). A ray that hits the light has
+// already passed the cut-outs of the geometry; a sample and a photon have not, so these two include the opacity as a
+// factor.
 #pragma once
 
 #include <functional>

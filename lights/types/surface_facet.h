@@ -1,5 +1,5 @@
-// The surfaces of lights that are their own geometry, as rays meet them: in double, in the light's local space. The
-// very surfaces that quadric_surface.h and rect_surface.h sample.
+// Intersection of rays with the surfaces of lights that are their own geometry, in double and in the light's local
+// space. The surfaces are those that quadric_surface.h and rect_surface.h sample.
 #pragma once
 
 #include "geometry/quadric.h"
@@ -52,9 +52,9 @@ class AnalyticLight final : public SurfaceLight<Geometry> {
   Facet facet_;
 };
 
-// The table of such a light: its own rows, then the sides, the texture, shaping and what all lights have.
+// The parameter table of such a light: its own rows, then the sides, the texture, shaping and the rows of all lights.
 std::vector<ParameterInfo> UsdLuxSurfaceParameters(std::vector<ParameterInfo> own);
-// Sample blocks that every such light has to pass, each after `size`.
+// Parameter blocks for the suite, common to all such lights; each starts with `size`.
 std::vector<std::string> UsdLuxSurfaceSamples(const std::string& size);
 
 }  // namespace lampyr

@@ -1,8 +1,8 @@
-// An area light on one surface of its own space: QuadricSurface, RectSurface. Under any transform, which may be another
-// than the one it was built with.
+// An area light on one surface (QuadricSurface, RectSurface) given in a space of its own. The transform may be any,
+// also another than the one that the light was built with.
 //
-// Points are chosen in the unit square, evenly or by the table of the image, and carried to render space, where the
-// density is that of the square over the area's stretch. Seen from P, the surface's own view of itself (a cone, a
+// Points are sampled in the unit square, uniformly or from the table of the image, and transformed to render space; the
+// density is that of the square over the stretch of area. Seen from P, the surface's own view of itself (a cone, a
 // spherical rectangle, the arc that faces P) is sampled; a textured one is sampled by both techniques, half and half,
 // and the density is the sum of the two (a one-sample model with the balance heuristic, [Veach97 §9.2.4]).
 #pragma once
@@ -88,7 +88,7 @@ class SurfaceLight : public LightBase {
     const PdfArea density(static_cast<float>(surface_.OwnDensity() / placed.StretchAt(normal)));
     return density.value < kInfinity ? density : PdfArea(0);
   }
-  // Area in render space of a part of the surface with the normal `normal` that is all of the unit square.
+  // Area in render space of the whole unit square, for a surface whose normal is `normal` everywhere.
   float ElementAt(const Placed& placed, const Normal3& normal) const {
     const double own = surface_.OwnDensity();
     return own > 0 ? static_cast<float>(placed.StretchAt(normal) / own) : 0.0f;

@@ -1,6 +1,6 @@
-// A density over [0,1]², constant in each cell of a grid, that can be sampled within any window of the square: by a
-// table of sums over all rectangles that start at the origin ([Crow84]), in double, so that differences of sums are
-// those of the cells.
+// A density over [0,1]², constant in each cell of a grid, that can be sampled within any window of the square, from a
+// table of sums over all rectangles that start at the origin ([Crow84]). The sums are in double, so that their
+// differences are accurate to a single cell.
 #pragma once
 
 #include <span>

@@ -100,7 +100,7 @@ std::vector<std::string> Diagnostics::Warnings() const {
 }
 
 std::string NearestName(std::string_view given, const std::vector<std::string>& known) {
-  // The distance takes time in proportion to the product of both lengths, and nobody types such a name.
+  // The time of the distance is proportional to the product of both lengths, and real names are shorter.
   constexpr size_t kLongestName = 200;
   if (given.size() > kLongestName) return "";
   const int limit = std::max(1, static_cast<int>(given.size()) / 3);
@@ -121,7 +121,7 @@ std::string NearestName(std::string_view given, const std::vector<std::string>& 
 
 namespace {
 
-// Names of pbrt-v3, with the one of today that does most of the same.
+// Names of pbrt-v3, with the current name that is closest in meaning.
 constexpr std::pair<std::string_view, std::string_view> kFormerNames[] = {{"matte", "diffuse"},
                                                                           {"plastic", "coateddiffuse"},
                                                                           {"substrate", "coateddiffuse"},

@@ -1,4 +1,4 @@
-// Errors and warnings that name the place in the user's file at which they occurred.
+// Errors and warnings, with the location in the user's file at which they occurred.
 //
 // An invalid scene throws an Error. Tolerable defects go to a Diagnostics object that the caller owns (nothing here is
 // global). Both print as `file:line:col: error: what is wrong, and what would be right`.
@@ -25,28 +25,28 @@ struct FileLocation {
   std::string ToString() const;
 };
 
-// A scene, a file or a setting that cannot be used. what() is the complete message: "file:line:col: error: text".
+// The error of an invalid scene, file or setting. what() is the complete message: "file:line:col: error: text".
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& text);
   Error(const FileLocation& where, const std::string& text);
 
   const FileLocation& Where() const { return where_; }
-  const std::string& Text() const { return text_; }  // without the place
+  const std::string& Text() const { return text_; }  // without the location
 
  private:
   FileLocation where_;
   std::string text_;
 };
 
-// Wrong usage of the command line. Names no file.
+// Wrong usage of the command line; has no file.
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
-// Returns work(). An Error without a place is rethrown with the place `where`: for checks in code that knows nothing of
-// files. A UsageError passes unchanged.
+// Returns work(). An Error without a location is rethrown with the location `where`, for checks in code that does not
+// depend on files. A UsageError passes unchanged.
 template <class Work>
 auto LocateErrors(const FileLocation& where, const Work& work) {
   try {
@@ -59,8 +59,8 @@ auto LocateErrors(const FileLocation& where, const Work& work) {
   }
 }
 
-// Receives warnings and reports each distinct pair of place and text once. In Print mode, warnings that differ only in
-// numbers and quoted names form a kind: the first three texts of a kind are printed, the others are counted, and the
+// Receives warnings and reports each distinct pair of location and text once. In Print mode, warnings that differ only
+// in numbers and quoted names form a kind: the first three texts of a kind are printed, the others are counted, and the
 // destructor prints the count. Thread-safe.
 class Diagnostics {
  public:

@@ -24,7 +24,7 @@ class LargeArray {
   explicit LargeArray(size_t count) : LargeArray(ForOverwrite(count)) {
     if (count > 0) std::memset(static_cast<void*>(data_.get()), 0, count * sizeof(T));
   }
-  // Values without meaning, to be assigned before they are read.
+  // Uninitialised values, to be assigned before they are read.
   static LargeArray ForOverwrite(size_t count) {
     LargeArray array;
     array.size_ = count;

@@ -41,17 +41,17 @@ using LargePageVector = std::vector<T, LargePageAllocator<T>>;
 void* TakePagesOnDemand(size_t bytes);
 void GiveBackPages(void* memory, size_t bytes);
 
-// Reads *p and discards the value, so that the processor fetches its cache line while other work goes on. Unlike a
-// prefetch instruction the read is not dropped on a TLB miss, which is the usual case for tables of many megabytes. `p`
-// must be readable.
+// Reads *p and discards the value, so that the processor fetches its cache line during other work. Unlike a prefetch
+// instruction the read is not dropped on a TLB miss, which is the usual case for tables of many megabytes. `p` must be
+// readable.
 inline void Touch(const float* p) {
   const volatile float* watched = p;
   (void)*watched;
 }
 
-// Fetches the cache line at `p` by a prefetch instruction, which is dropped on a TLB miss at worst, and holds nothing
-// up. The empty asm counts as an effect: without one GCC takes a function that does nothing but prefetch for one
-// without effect, and removes the calls that it does not inline early.
+// Fetches the cache line at `p` by a prefetch instruction, which is dropped on a TLB miss at worst, and never stalls.
+// The empty asm counts as an effect: without it GCC considers a function that only prefetches to have no effect, and
+// removes the calls that it does not inline early.
 inline void Prefetch(const void* p) {
   __builtin_prefetch(p);
   asm volatile("");

@@ -1,4 +1,4 @@
-// Available memory, and a budget that is checked before allocation: a scene file of a few lines can ask for more memory
+// Available memory, and a budget that is checked before allocation: a scene file of a few lines can require more memory
 // than any machine has, and the system would then kill the process without a message.
 #pragma once
 
@@ -19,7 +19,7 @@ class MemoryBudget {
  public:
   explicit MemoryBudget(uint64_t bytes) : bytes_(static_cast<double>(bytes)) {}
 
-  // Throws an Error at `where` if `bytes` exceeds what is left of the budget. `what`: the objects that need the memory,
+  // Throws an Error at `where` if `bytes` exceeds the rest of the budget. `what`: the objects that need the memory,
   // plural.
   void Take(double bytes, const FileLocation& where, const std::string& what);
 

@@ -30,7 +30,7 @@ class Progress {
 };
 
 // One line of progress for a terminal with `columns` columns, always shorter than that. If a bar does not fit (at 40
-// columns, say) it is left out ("50 %, 3 min 20 s left, 64 spp"); what is still too long is cut off at the end.
+// columns, say) it is omitted ("50 %, 3 min 20 s left, 64 spp"); a line that is still too long is cut off at the end.
 std::string ProgressLine(double fraction, const std::string& left, const std::string& note, int columns);
 
 // "1 h 02 min", "3 min 20 s", "4.2 s", "37 ms".

@@ -31,7 +31,7 @@ struct Setting {
 
   std::string sceneName{};  // name in scene files; "": `name` without hyphens
   bool isInScenes = true;   // false: command line only
-  bool isBiased = false;    // true: any other value than the fallback makes the picture wrong, for speed
+  bool isBiased = false;    // true: any other value than the fallback biases the picture, for speed
 
   std::string NameInScenes() const;
   // The range in words: "from 0 to 1", "0 or more"; "" for numbers without a range.
@@ -40,7 +40,7 @@ struct Setting {
   std::string Format(const SettingValue& value) const;
   // A value as text without rounding: different values have different texts.
   static std::string ToExactString(const SettingValue& value);
-  // The value of a command-line argument. Throws an Error that says what would be right if the text is malformed or the
+  // The value of a command-line argument. Throws an Error that describes valid values if the text is malformed or the
   // number is out of range.
   SettingValue Parse(const std::string& text) const;
   // `value`, converted to the type of the fallback (integers become numbers). Throws an Error if the type does not

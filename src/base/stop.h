@@ -1,7 +1,7 @@
 // A request to end a rendering pass early, which the loops that trace paths poll.
 //
-// The request is global to the process: a path may have any length, and is traced far below the code that knows why the
-// pass has to end.
+// The request is global to the process: a path may have any length, and is traced many levels below the code that
+// decides to end the pass.
 #pragma once
 
 #include <atomic>

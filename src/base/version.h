@@ -1,4 +1,4 @@
-// The version that images and `lampyr --version` state.
+// The version in images and in the output of `lampyr --version`.
 #pragma once
 
 namespace lampyr {

@@ -1,4 +1,4 @@
-// The time that work takes, by the clock and of the processor.
+// Wall-clock and processor time of work.
 #pragma once
 
 #include <chrono>

@@ -54,10 +54,10 @@ struct CameraDensities {
 // The region of space that the image shows: a pyramid, or all directions.
 struct CameraView {
   Point3 place{0.0f};           // of the pinhole, or the centre of the lens
-  std::vector<Vector3> planes;  // normals of planes through `place`, towards the image; without any it is all around
+  std::vector<Vector3> planes;  // normals of planes through `place`, towards the image; empty: all directions
 };
 
-// Film points with the same ray as another film point.
+// Film points that have the same ray as another film point.
 struct FilmCopies {
   static constexpr int kMost = 8;
   std::array<Point2, kMost> points;
@@ -83,7 +83,8 @@ class Camera {
   virtual bool ConnectsLightPaths() const { return true; }
   // Approximate solid angle of a pixel around `ray`, sr; for footprints without ConnectsLightPaths. 0: unknown.
   virtual double PixelSolidAngle(const Ray& /*ray*/) const { return 0; }
-  // nullopt: there is no such place, because rays are parallel or are refracted by elements of the lens.
+  // The region of space that the image shows. nullopt if there is no single place, because rays are parallel or are
+  // refracted by elements of the lens.
   virtual std::optional<CameraView> View() const { return std::nullopt; }
   virtual bool HasPinhole() const = 0;                    // the lens is a point: a delta position
   virtual bool HasParallelRays() const { return false; }  // orthographic without a lens: a delta direction

@@ -80,7 +80,7 @@ void Join(Bounds& all, const Bounds& more) {
             : *more;
 }
 
-// Bounds over the radii with light between `light`, a radius with light, and `dark`, one without; by bisection.
+// Bounds over the radii between `light`, a radius with light, and `dark`, one without, by bisection.
 Bounds FindLast(const LensSystem& lens, double light, double dark) {
   Bounds last;
   for (int i = 0; i < kBisections; ++i) {

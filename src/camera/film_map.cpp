@@ -35,7 +35,7 @@ FilmPlane::FilmPlane(const CameraFrame& frame, double screenScale, double distan
   centerFilm = {0.5 * frame.width, 0.5 * frame.height};
   center = axes.x * middle.x + axes.y * middle.y + axes.z * distance;
   dx = axes.x * (screenScale * (screenMax.x - screenMin.x) / frame.width);
-  dy = axes.y * (-screenScale * (screenMax.y - screenMin.y) / frame.height);  // film y runs down
+  dy = axes.y * (-screenScale * (screenMax.y - screenMin.y) / frame.height);  // film y points down
   normal = glm::cross(dx, dy);
   const Vector3d unit = normal / glm::dot(normal, normal);
   dualX = glm::cross(dy, unit);

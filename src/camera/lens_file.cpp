@@ -14,7 +14,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr double kLargest = 1e9;       // mm: a radius of a kilometre is flat
+constexpr double kLargest = 1e9;       // mm: a radius of a kilometre counts as flat
 constexpr double kLargestIndex = 10;   // far above any glass
 constexpr double kFlush = 1e-6;        // mm by which rims may overlap: the numbers of a file are rounded
 constexpr size_t kLongestNumber = 64;  // characters

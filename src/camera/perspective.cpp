@@ -101,7 +101,7 @@ class PerspectiveCamera final : public Camera {
   bool HasPinhole() const override { return !hasLens_; }
 
  private:
-  // From the origin to what the film point sees at a distance of 1; not unit.
+  // From the origin to the point at distance 1 that the film point sees; not unit.
   Vector3 DirectionOf(const Point2& film) const {
     return center_ + (film.x - centerFilm_.x) * dx_ + (film.y - centerFilm_.y) * dy_;
   }

@@ -73,7 +73,7 @@ class RealisticCamera final : public Camera {
   bool ConnectsLightPaths() const override { return false; }
   bool HasPinhole() const override { return false; }
 
-  // That of a thin lens at the rear principal plane.
+  // The solid angle for a thin lens at the rear principal plane.
   double PixelSolidAngle(const Ray& ray) const override {
     const double cosine = std::abs(glm::dot(axis_, Vector3d(ray.direction)));
     const double pixelArea = filmSize_.x * filmSize_.y / (pixels_.x * pixels_.y);

@@ -55,7 +55,7 @@ float FiniteOr0(float value) {
   return std::abs(value) < largest ? value : 0;
 }
 
-// The channels of a group. Their own spread says which differences count as none.
+// The channels of a group. Their own spread determines which differences are negligible.
 Guide ReadGroup(const Image& image, const FeatureGroup& group) {
   Guide guide;
   double spread = 0;

@@ -15,15 +15,15 @@ namespace lampyr {
 
 namespace {
 
-// Radii of the means of errors, pixels.
+// Radii, in pixels, of the means of errors.
 constexpr int kNear = 4, kFar = 12;
 
 constexpr size_t kChoices = kWidths.size();
 using Shares = std::array<Plane, kChoices>;
 
-// Means over neighbours, because the variance of a pixel follows its own noise: of those near, or of those farther
-// around if that is more. A pixel that has missed the bright samples seems to have no noise, and takes only its like
-// for the same. The variance of what few samples find is proportional to the value.
+// Local means of variances: of a near or a wide neighbourhood, whichever is larger. The variance of a pixel is
+// correlated with its own noise: a pixel that has missed the bright samples seems to have no noise, and would be
+// averaged only with pixels like itself. The variance of rare contributions is proportional to the value.
 Plane VarianceAround(const Plane& variance, const Plane& value, int threads) {
   constexpr int near = 1, far = 2;
   const Plane mean = BoxMeans(value, far, threads);
@@ -49,7 +49,7 @@ RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature>
     for (size_t half = 0; half < 2; ++half) {
       Plane variance = around;
       for (size_t i = 0; i < variance.Size(); ++i) {
-        // Differences below this fraction of the value are not seen.
+        // Differences below this fraction of the value are invisible.
         const float unseen = 0.002f * value.values[i];
         variance.values[i] =
             variance.values[i] * picture.noiseScale.values[i] / static_cast<float>(picture.shares[half]) +
@@ -62,8 +62,8 @@ RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature>
   return input;
 }
 
-// Keeps the filtered halves within the values of the picture around each pixel: a regression rings beside something
-// that is much brighter than all around it.
+// Limits the filtered halves to the values of the picture around each pixel: a regression rings beside a region that is
+// much brighter than its surroundings.
 void LimitToSurroundings(const NoisyPicture& picture, int threads, Halves& halves) {
   constexpr int radius = 2;
   const int width = picture.color[0].width, height = picture.color[0].height;
@@ -84,7 +84,7 @@ void LimitToSurroundings(const NoisyPicture& picture, int threads, Halves& halve
   });
 }
 
-// The shares of the widths at each pixel: the one of the smallest error, blended so that no seam shows.
+// The shares of the widths at each pixel: mainly the width of the smallest error, blended to avoid seams.
 Shares ShareByError(const std::array<Filtered, kChoices>& filtered, int threads) {
   const int width = filtered[0].value[0].width, height = filtered[0].value[0].height;
   Shares shares;
@@ -116,8 +116,9 @@ Halves Blend(const std::array<Halves, kChoices>& choices, const Shares& shares) 
   return halves;
 }
 
-// Takes as much of the residual back as minimises the error where the filter has a bias b and the picture the variance
-// σ²: b² / (b² + σ²). What may be chance is left out, because it comes back as a patch of noise.
+// Adds back the fraction of the residual that minimises the error if the filter has a bias b and the picture the
+// variance σ²: b² / (b² + σ²). Residuals that are not significant are omitted, because they would return as a patch of
+// noise.
 void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const HalfStatistics& statistics, int threads,
                 Halves& halves) {
   constexpr float kUnsure = 1, kSure = 4;  // standard errors of the squared bias
@@ -130,7 +131,7 @@ void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const Hal
   }
   scale = BoxMeans(scale, 1, threads);
   for (float& value : scale.values) value += 1e-12f;
-  // A pixel that has missed the bright samples seems to have no noise: what is usual around it counts.
+  // A pixel that has missed the bright samples seems to have no noise: the local mean limits its variance from below.
   const Plane usual = MeanSquares(noise, scale, kNear, threads);
   noise = BoxMeans(noise, 1, threads);
   for (size_t i = 0; i < noise.Size(); ++i) noise.values[i] = std::max(noise.values[i], usual.values[i]);
@@ -154,8 +155,8 @@ void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const Hal
   }
 }
 
-// The error that is stated is the larger one of those near by and farther around: what is left of the noise is smooth,
-// so that few pixels do not tell its size.
+// States the larger one of the errors in a near and a wide neighbourhood: the remaining noise is smooth, so that a few
+// pixels do not determine its size.
 void StateMore(const Filtered& far, Filtered& near) {
   for (size_t c = 0; c < 3; ++c) {
     for (size_t i = 0; i < far.value[c].Size(); ++i) {
@@ -166,7 +167,7 @@ void StateMore(const Filtered& far, Filtered& near) {
   }
 }
 
-// The light that outliers had is missing around them, nobody knows where exactly.
+// Adds the light of outliers to the error around them: it is missing there, at unknown places.
 void AddMissing(const NoisyPicture& picture, int threads, Filtered& filtered) {
   constexpr int radius = 9;
   for (size_t c = 0; c < 3; ++c) {
@@ -208,7 +209,7 @@ Image MakeImage(const Image& noisy, const NoisyPicture& picture, const Filtered&
     for (size_t c = 0; c < 3; ++c) {
       float value = picture.color[c].values[i], variance = picture.variance[c].values[i];
       if (isKnown) {
-        // A regression may undershoot 0 beside something bright.
+        // A regression may undershoot 0 beside a bright region.
         value = std::max(filtered.value[c].values[i], std::min(value, 0.0f));
         variance = filtered.variance[c].values[i] + std::max(filtered.squaredBias[c].values[i], 0.0f);
       }
@@ -238,8 +239,8 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   std::array<Filtered, kChoices> filtered;
   for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, kNear, threads);
   Halves halves = Blend(choices, ShareByError(filtered, threads));
-  // The covariance of the halves is that of the median block. Where samples are less stratified than there, it would
-  // pass for a bias.
+  // The covariance of the halves is that of the median block. In blocks where samples are less stratified, it would be
+  // mistaken for a bias.
   HalfStatistics uncorrelated = statistics;
   uncorrelated.covariance = 0;
   KeepDetail(picture, FilteredOf(picture, halves, uncorrelated, kNear, threads), statistics, threads, halves);

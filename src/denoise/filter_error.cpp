@@ -41,7 +41,7 @@ float CorrelationOf(const NoisyPicture& picture, const Halves& halves) {
   return std::clamp(*middle, -0.9f, 0.0f);
 }
 
-// The standard error of MeanSquares, `means`, from how much `squares` vary around each pixel.
+// The standard error of MeanSquares, `means`, from the variation of `squares` around each pixel.
 Plane ErrorOfMean(const Plane& squares, const Plane& means, const Plane& scale, int radius, int threads) {
   Plane products = squares;
   for (size_t i = 0; i < products.Size(); ++i) {
@@ -49,7 +49,7 @@ Plane ErrorOfMean(const Plane& squares, const Plane& means, const Plane& scale, 
     products.values[i] = relative * relative;
   }
   products = BoxMeans(BoxMeans(products, radius, threads), radius, threads);
-  // Σ w² of two means over 2 r + 1 pixels in a row is 2 / (3 (2 r + 1)), but for terms of higher order.
+  // Σ w² of two means over 2 r + 1 pixels in a row is 2 / (3 (2 r + 1)), up to terms of higher order.
   const float independent = 1.5f * static_cast<float>(2 * radius + 1);
   for (size_t i = 0; i < products.Size(); ++i) {
     const float mean = means.values[i] / scale.values[i];
@@ -58,7 +58,7 @@ Plane ErrorOfMean(const Plane& squares, const Plane& means, const Plane& scale, 
   return products;
 }
 
-// The mean product of the residuals of the halves is the squared bias, and the covariance of their noise.
+// The mean product of the residuals of the halves is the squared bias plus the covariance of their noise.
 void EstimateError(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int radius,
                    int threads, Filtered& filtered) {
   const auto share = static_cast<float>(picture.shares[0] * picture.shares[1]) * statistics.varianceFactor;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kColors[3] = {"R", "G", "B"};
 
-// Planes of the channels PREFIX + R, G, B; empty planes if the image has not all of them.
+// Planes of the channels PREFIX + R, G, B; empty planes if one of them is missing.
 ColorPlanes ReadColors(const Image& image, const std::string& prefix) {
   ColorPlanes planes;
   for (size_t c = 0; c < 3; ++c) {
@@ -61,7 +61,7 @@ float Deviation(const ColorPlanes& variance, size_t i) {
       .Luminance();
 }
 
-// A power of two near the median luminance of what is not black; 1 in a black picture.
+// A power of two near the median luminance of the pixels that are not black; 1 in a black picture.
 double UnitOf(const ColorPlanes& color) {
   std::vector<float> luminances;
   for (size_t i = 0; i < color[0].Size(); ++i) {
@@ -109,7 +109,7 @@ void FillInvalid(NoisyPicture& picture) {
   const auto placeOf = [&](int x, int y) {
     return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
   };
-  // Calls visit(place) for the pixels beside one.
+  // Calls visit(place) for the neighbours of a pixel.
   const auto forNeighbours = [&](size_t place, const auto& visit) {
     const auto x = static_cast<int>(place % static_cast<size_t>(width)),
                y = static_cast<int>(place / static_cast<size_t>(width));
@@ -149,7 +149,7 @@ void FillInvalid(NoisyPicture& picture) {
   }
 }
 
-// The third largest luminance around a pixel, without its own; infinite in a picture of three pixels or fewer.
+// The third largest luminance around a pixel, without the pixel itself; infinite in a picture of three pixels or fewer.
 float ThirdAround(const Plane& luminance, int x, int y) {
   constexpr int radius = 3;
   if (luminance.Size() <= 3) return std::numeric_limits<float>::infinity();
@@ -205,7 +205,7 @@ void RemoveOutliers(NoisyPicture& picture, int threads, DenoiseReport& report) {
   report.removed = all > 0 ? removed / all : 0;
 }
 
-// Halves of the layer of half of the samples, which holds its share of the picture. False: the picture has none.
+// Reads the halves from the layer of half of the samples, which holds its share of the picture. False: no such layer.
 bool ReadHalves(const Image& image, NoisyPicture& picture) {
   const ColorPlanes part = ReadColors(image, std::string(kHalfLayer) + ".");
   const int samples = SamplesOf(image);
@@ -214,7 +214,7 @@ bool ReadHalves(const Image& image, NoisyPicture& picture) {
   picture.shares[0] = share != image.metadata.end()
                           ? std::atof(share->second.c_str())
                           : static_cast<double>(SamplesInHalf(static_cast<uint32_t>(samples))) / samples;
-  // A part of a picture may have samples of one half alone.
+  // A crop may have samples of one half alone.
   if (!(picture.shares[0] > 0.01 && picture.shares[0] < 0.99)) return false;
   picture.shares[1] = 1 - picture.shares[0];
   const auto first = static_cast<float>(1 / picture.shares[0]), second = static_cast<float>(1 / picture.shares[1]);
@@ -231,7 +231,7 @@ bool ReadHalves(const Image& image, NoisyPicture& picture) {
   return true;
 }
 
-// A normal number that depends on the place alone.
+// A normally distributed number that depends on the position alone.
 float NormalAt(size_t place) {
   const auto mix = [](uint64_t bits) {
     bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9;  // [Stafford11]
@@ -248,7 +248,7 @@ void MakeHalves(NoisyPicture& picture) {
   picture.shares = {0.5, 0.5};
   picture.halves[0] = picture.halves[1] = picture.color;
   for (size_t i = 0; i < picture.isValid.size(); ++i) {
-    const float normal = NormalAt(i);  // one for all channels, whose noise is much the same
+    const float normal = NormalAt(i);  // one for all channels, whose noise is nearly the same
     for (size_t c = 0; c < 3; ++c) {
       const float noise = normal * std::sqrt(picture.variance[c].values[i]);
       picture.halves[0][c].values[i] += noise;
@@ -257,8 +257,8 @@ void MakeHalves(NoisyPicture& picture) {
   }
 }
 
-// Samplers that stratify have less noise than the variance says, and splats are not alone in their pixel: the size of
-// the noise comes from the halves, its distribution over pixels from the variance, which is known better.
+// With stratified samples the noise is smaller than the variance, and splats are spread over several pixels: the size
+// of the noise is estimated from the halves, its distribution over pixels from the variance, which is more precise.
 Plane NoiseScale(const NoisyPicture& picture, bool hasHalves, int threads) {
   const int width = picture.color[0].width, height = picture.color[0].height;
   Plane seen(width, height), stated(width, height);

@@ -1,4 +1,4 @@
-// A rendered picture as the denoiser takes it: colour, variance, and two independent halves.
+// The input of the denoiser: colour, variance, and two independent halves.
 #pragma once
 
 #include <array>
@@ -14,24 +14,24 @@ namespace lampyr {
 using ColorPlanes = std::array<Plane, 3>;  // R, G, B
 
 struct NoisyPicture {
-  double unit = 1;                    // in which values are given: a power of two near the median luminance
+  double unit = 1;                    // of all values: a power of two near the median luminance
   ColorPlanes color, variance;        // without outliers; variance of the mean
   std::array<ColorPlanes, 2> halves;  // estimates of the same picture with independent noise
   std::array<double, 2> shares;       // of the halves in `color`: their sum is 1
-  ColorPlanes excess;                 // what outliers had above their surroundings: `color` is without it
-  std::vector<uint8_t> isValid;       // colour and variance are finite, or made of those of near pixels
-  std::vector<uint8_t> isKept;        // too bright to be filtered: stays as it is
-  Plane noiseScale;                   // of `variance`: what the halves say about its size
+  ColorPlanes excess;                 // of outliers over their surroundings; not included in `color`
+  std::vector<uint8_t> isValid;       // colour and variance are finite, or interpolated from nearby pixels
+  std::vector<uint8_t> isKept;        // too bright to be filtered: unchanged
+  Plane noiseScale;                   // of `variance`: its size according to the halves
 };
 
 // Throws an Error if the image has no colour, no variance or fewer than two samples per pixel. Fills the report.
 //
-// Without a layer of half of the samples, two halves with independent noise are made of the picture p and its standard
-// deviation σ: p + σg and p - σg with a normal g that depends on the place alone ([Rasines23]). That is exact for
-// normal noise.
+// Without a layer of half of the samples, two halves with independent noise are made from the picture p and its
+// standard deviation σ: p + σg and p - σg with a normal g that depends on the position alone ([Rasines23]). This is
+// exact for normal noise.
 //
-// Outliers: a pixel more than twice as bright as the third brightest of the 48 around it, whose own samples do not
-// agree that it is bright (it is less than four standard deviations), is reduced to that. What was above is `excess`.
+// Outliers: a pixel more than twice as bright as the third brightest of the 48 around it, and not significantly bright
+// by its own samples (by less than four standard deviations), is reduced to that bound. The difference is `excess`.
 NoisyPicture ReadNoisyPicture(const Image& image, int threads, DenoiseReport& report);
 
 }  // namespace lampyr

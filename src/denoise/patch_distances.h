@@ -1,4 +1,4 @@
-// How much the surroundings of two pixels differ beyond their noise: the distances of non-local means.
+// Differences of the surroundings of two pixels beyond their noise: the distances of non-local means.
 #pragma once
 
 #include <array>
@@ -23,17 +23,17 @@ struct Guide {
 };
 
 // The distances of the pixels of a tile from those around them: the mean over patches of 2·patch + 1 pixels squared,
-// and over channels, of the squared difference minus its expectation by noise, relative to the variances
-// ([Rousselle12 §4.1]; the smaller of the two variances is subtracted for the other pixel). Beyond the border, patches
-// repeat it.
+// and over channels, of the squared difference minus its expectation by noise, relative to the variances ([Rousselle12
+// §4.1]; the smaller of the two variances is subtracted for the other pixel). Beyond the border, patches repeat its
+// pixels.
 class PatchDistances {
  public:
   PatchDistances(int window, int patch) : window_(window), patch_(patch) {}
 
   void Compute(const Guide& guide, const Tile& tile);
   int Offsets() const { return (2 * window_ + 1) * (2 * window_ + 1); }
-  // Those of the pixels of the tile, row by row, from the pixels at an offset. Offsets are numbered row by row, too.
-  // Infinite for pixels beyond the border.
+  // Distances of the pixels of the tile, row by row, from the pixels at an offset. Offsets are numbered row by row,
+  // too. Infinite for pixels beyond the border.
   const float* At(int offset) const { return distances_.data() + static_cast<size_t>(offset) * pixels_; }
 
  private:

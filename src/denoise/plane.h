@@ -23,8 +23,8 @@ struct Plane {
   size_t Size() const { return values.size(); }
 };
 
-// Means over boxes of 2·radius + 1 pixels squared, as far as they are in the plane. Each mean is summed on its own: a
-// huge value does not reach beyond its box.
+// Means over boxes of 2·radius + 1 pixels squared, clipped to the plane. Each mean is summed separately, so that a huge
+// value does not affect the rounding outside of its box.
 Plane BoxMeans(const Plane& plane, int radius, int threads);
 
 }  // namespace lampyr

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kWindow = 9, kPatch = 3;
 constexpr int kSide = 2 * kWindow + 1;
-constexpr int kTile = 24;  // at least 2·kWindow, so that windows of every other tile do not meet
+constexpr int kTile = 24;  // at least 2·kWindow, so that windows of every other tile do not overlap
 static_assert(kTile >= 2 * kWindow);
 
-// A pixel as the regression sees it: a constant, x, y and the features; then the colours of the two halves.
+// A pixel in the regression: a constant, x, y and the features; then the colours of the two halves.
 constexpr int kTerms = 3 + static_cast<int>(kMostFeatures), kEntries = kTerms + 6;
 using Entry = Eigen::Matrix<float, kEntries, 1>;
 using Moments = Eigen::Matrix<float, kEntries, kTerms>;
@@ -29,7 +29,7 @@ using Fit = Eigen::Matrix<float, 4, kTerms>;  // of R, G, B, and a row of zeros
 using Sum = Eigen::Vector4f;
 using Sums = std::vector<Sum, Eigen::aligned_allocator<Sum>>;
 
-// What one tile needs; kept by a thread from tile to tile.
+// Working memory of one tile; kept by a thread from tile to tile.
 class TileRegression {
  public:
   explicit TileRegression(const RegressionInput& input)
@@ -94,7 +94,7 @@ void TileRegression::CopyEntries() {
   for (size_t i = 0; i < input_.features.size(); ++i) Standardise(input_.features[i], i);
 }
 
-// Enters a feature with mean 0 and variance 1 over the tile and its border.
+// Stores a feature, scaled to mean 0 and variance 1 over the tile and its border.
 void TileRegression::Standardise(const CleanFeature& feature, size_t index) {
   double sum = 0, squares = 0, count = 0;
   const int x0 = std::max(tile_.x0 - kWindow, 0), x1 = std::min(tile_.x1 + kWindow, Width());
@@ -138,7 +138,7 @@ Moments TileRegression::Gather(int x, int y, size_t half, float width) {
   return moments;
 }
 
-// The noise of a feature would make the fit too flat and noisy at once: it is added as a ridge.
+// The noise of a feature would make the fit both too flat and noisy: its variance is added as a ridge.
 Fit TileRegression::FitOf(const Moments& moments, int x, int y, size_t half) const {
   Normal normal = moments.topRows<kTerms>().cast<double>();
   const double weight = normal(0, 0);
@@ -192,8 +192,8 @@ RegressionOutput OutputOf(const std::array<Sums, 2>& sums, int width, int height
 
 }  // namespace
 
-// Tiles take turns in four groups, so that no two at once add to the same pixel, and each pixel adds up in the same
-// order.
+// Tiles are processed in four groups, so that no two at the same time add to the same pixel, and each pixel is summed
+// in the same order.
 std::array<RegressionOutput, kWidths.size()> RegressInWindows(const RegressionInput& input, int threads,
                                                               const std::atomic<bool>& interrupted,
                                                               const std::function<void(double)>& progress) {

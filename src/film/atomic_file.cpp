@@ -37,7 +37,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   errno = 0;
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (!file_) Fail(errno);
-  // The permissions of the file that is replaced.
+  // Keeps the permissions of the file that is replaced.
   if (std::filesystem::is_regular_file(there))
     (void)fchmod(fileno(file_), static_cast<mode_t>(there.permissions() & std::filesystem::perms::mask));
 }

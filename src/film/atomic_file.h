@@ -22,7 +22,7 @@ class AtomicFile {
   void Seek(uint64_t position);
   void SeekToEnd();
 
-  // Throws if an earlier Write failed and its Error did not arrive here (it was thrown in a destructor, say).
+  // Throws if an earlier Write failed and its Error was lost (for example because it was thrown in a destructor).
   void ThrowIfFailed();
   // Renames the file, once its bytes are on disk. Also throws as ThrowIfFailed does.
   void Commit();

@@ -11,7 +11,7 @@ namespace lampyr {
 // The identifier of a name: the bits of its MurmurHash3 (32 bits, seed 0), as a float that is a normal number.
 float CryptomatteId(const std::string& name);
 
-// What covers a pixel: shares by identifier. The largest ones are kept.
+// Coverage of a pixel by identifier. Write keeps the largest.
 class CryptomattePixel {
  public:
   void Add(float id, double weight) { weights_[id] += weight; }
@@ -28,7 +28,7 @@ class CryptomattePixel {
 // Channels of a layer such as "CryptoObject": CryptoObject00.R, .G, .B, .A, CryptoObject01.R, …: identifiers in R and
 // B, coverages in G and A.
 std::vector<std::string> CryptomatteChannels(const std::string& layer);
-// The metadata that tell of the layer, with a manifest of its names.
+// The metadata that describe the layer, with a manifest of its names.
 std::map<std::string, std::string> CryptomatteMetadata(const std::string& layer, const std::vector<std::string>& names);
 
 }  // namespace lampyr

@@ -41,7 +41,7 @@ void CheckExrHeader(const std::filesystem::path& path) {
   while (ReadName(file, name)) {
     if (name.empty() && (!hasParts || isEmpty)) return;
     isEmpty = name.empty();
-    if (isEmpty) continue;  // the next header begins
+    if (isEmpty) continue;  // the next header
     if (!ReadName(file, type)) return;
     const uint32_t size = ReadNumber(file);
     if (!file.good()) return;

@@ -1,4 +1,5 @@
-// Sums per pixel, and the image developed from them. Radiance in W/(m² sr); the sums of a million samples do not drift.
+// Sums per pixel, and the image developed from them. Radiance in W/(m² sr); the sums of a million samples do not lose
+// precision.
 #include "film/film.h"
 
 #include <algorithm>
@@ -91,7 +92,7 @@ bool AreFinite(std::span<const CompensatedSum> sums) {
   return std::all_of(sums.begin(), sums.end(), [](const CompensatedSum& sum) { return sum.IsFinite(); });
 }
 
-// Parts of a saved film that not every film has.
+// Optional parts of a saved film.
 constexpr int kHasSplats = 1, kHasBias = 2, kHasWhite = 4;
 
 }  // namespace
@@ -286,7 +287,8 @@ void Film::PrefetchSplats(const Point2& film) const {
   for (size_t offset = 0; offset < sizeof(SplatSums); offset += kLine) Prefetch(sums + offset);
 }
 
-// Adds to the rows of one band. Groups of rows are dealt to the bands in turn, so that the threads share a bright spot.
+// Adds to the rows of one band. Groups of rows are assigned to the bands in turn, so that the threads share a bright
+// spot.
 void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands, bool isInHalf) {
   constexpr int kGroup = 4;
   const Vector2 radius = filter.Radius();
@@ -318,7 +320,7 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
       }
     }
   };
-  // Every band sees all splats, most of which fall into others; their pixels are not fetched.
+  // Every band tests all splats; pixels of those that fall into other bands are not fetched.
   const auto reachesBand = [&](const Point2& film) {
     const int first = firstPixel(film.y, radius.y, crop_.y0, crop_.y1) / kGroup;
     const int last = lastPixel(film.y, radius.y, crop_.y0 - 1, crop_.y1 - 1) / kGroup;
@@ -566,8 +568,8 @@ ErrorParts Film::PartsOfError(double largestSample) const {
   const double largest = samples > 0 ? std::pow(largestSample * n / samples, 2) : 0;
   const double bound = UpperBound(varianceSum, fourthSum, largest), biasSquare = MeanBiasSquare();
   const double meanLuminance = luminanceSum / n;
-  // An image that is black after this many samples per pixel counts as converged. Before, light paths may only have
-  // missed what the camera sees: pixels have no variance until the first splat.
+  // An image that is black after this many samples per pixel counts as converged. Before that, light paths may still
+  // find a contribution: pixels have no variance until the first splat.
   constexpr double kLong = 4096;
   const bool isBlack = varianceSum == 0 && meanLuminance == 0;
   if (isBlack && samples / n >= kLong) return {};

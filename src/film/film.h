@@ -12,8 +12,8 @@
 // The pixels of an adaptive film differ in their numbers of samples. Its passes are grouped in stages; a pixel is the
 // mean of its stages, weighted by their passes. These weights are the same in all pixels and known beforehand, so that
 // the picture is unbiased although the numbers of samples depend on the samples of earlier stages. The mean over all
-// samples of a pixel would not be: where a stage by chance missed the light, the next one has fewer samples, and the
-// dark stage more than its share.
+// samples of a pixel would be biased: after a stage that by chance found little light, the next one has fewer samples,
+// and the dark stage gets too large a weight.
 #pragma once
 
 #include <array>
@@ -33,12 +33,12 @@
 
 namespace lampyr {
 
-// The layer of a film that gets the samples of about half of the indices, instead of a part of each sample. It is the
-// last one. This layer and the rest are two estimates with independent noise, from which the noise of any processed
+// The layer of a film that gets about half of the samples (by index), instead of a part of each sample. It is the last
+// layer. This layer and the rest are two estimates with independent noise, from which the noise of any processed
 // picture is estimated.
 inline constexpr const char* kHalfLayer = "half";
 // True if a sample belongs to kHalfLayer: the first half of the indices from each power of two to the next. Aligned
-// blocks of a Sobol sequence are well distributed each on its own; two parts that are so only together have opposite
+// blocks of a Sobol sequence are each well distributed; two parts that are well distributed only together have opposite
 // errors.
 inline bool IsInHalf(uint32_t sampleIndex) {
   return sampleIndex < 2 ? sampleIndex == 0 : (sampleIndex & (std::bit_floor(sampleIndex) / 2)) == 0;
@@ -46,18 +46,18 @@ inline bool IsInHalf(uint32_t sampleIndex) {
 // Number of the first n samples that belong to kHalfLayer: from n/2 to n·2/3, rounded up.
 uint32_t SamplesInHalf(uint32_t n);
 
-// The share of the samples that are in kHalfLayer, where they are not the first ones of the picture: a key of
+// Fraction of the samples that are in kHalfLayer, if these are not the first ones of the picture: a key of
 // Image::metadata.
 inline constexpr const char* kHalfShareMetadata = "lampyr.halfShare";
 
-// A channel: the fraction of a pixel's variance that is of splats. A splat is in several pixels, so that their noise is
-// correlated: the variance of a sum over pixels has the variance of splats that many times (PixelFilter::SplatCount; a
-// key of Image::metadata).
+// A channel: the fraction of a pixel's variance that is due to splats. A splat is in several pixels, so that their
+// noise is correlated: in the variance of a sum over pixels, that of splats counts this many times
+// (PixelFilter::SplatCount; a key of Image::metadata).
 inline constexpr const char* kSplatShareChannel = "splatShare";
 inline constexpr const char* kSplatCountMetadata = "lampyr.splatCount";
 
-// Bands of the spectrum that a film keeps besides its picture: equal parts of the range of wavelengths from `from` to
-// `to` (nm).
+// Spectral bands that a film keeps besides its picture: equal parts of the range of wavelengths from `from` to `to`
+// (nm).
 struct SpectralBands {
   int count = 0;
   double from = 0, to = 0;
@@ -67,9 +67,9 @@ struct SpectralBands {
   int Of(double wavelength) const;
   bool operator==(const SpectralBands&) const = default;
 };
-// The layers of a film for those bands: three bands each, as other layers have red, green and blue. The name of such a
-// layer lists its channels, which are named by the middle of the band, as the layout for spectral images has it
-// ([Fichet21]).
+// The layers of a film for these bands: three bands each, in place of the red, green and blue of other layers. The name
+// of such a layer lists its channels, which are named by the middle of the band, as in the layout for spectral images
+// of [Fichet21].
 std::vector<std::string> LayersOfBands(const SpectralBands& bands);
 bool IsBandLayer(const std::string& layer);
 
@@ -103,12 +103,12 @@ struct PixelSums {
   bool IsFinite() const;
 };
 
-// The stages of a pixel that have ended, in an adaptive film. N: passes of a stage; n: samples of the pixel in it.
-// The pixel is Σ N ΣwL / n over Σ N Σw / n: a ratio of each stage by itself would be biased, as that of few samples is.
+// The completed stages of a pixel of an adaptive film. N: passes of a stage; n: samples of the pixel in it. The pixel
+// is Σ N ΣwL / n over Σ N Σw / n: the ratio of each single stage would be biased, as ratios of few samples are.
 struct PixelStages {
   double sum[3] = {0, 0, 0}, weight = 0;  // Σ N ΣwL / n, Σ N Σw / n
-  // Variance of `sum` per variance of a sample: Σ N² / n of independent samples, and Σ N² Σ c² / n² of samples of which
-  // the c of one pass are equal.
+  // Variance of `sum` per variance of a sample: Σ N² / n for independent samples, and Σ N² Σ c² / n² for samples of
+  // which the c of one pass are equal.
   double independent = 0, shared = 0;
   double sumOfFourths = 0;  // Σ N⁴ · fourths / n⁴
   // Over the samples of all stages, as in PixelSums:
@@ -131,8 +131,8 @@ struct PixelGroups {
   bool IsFinite() const;
 };
 
-// What merging photons adds to the expectation of a pixel, as its samples estimate it (photon/merge_bias.h): sums over
-// those of one pass, which gather the same photons.
+// The bias of a pixel by merging photons, as estimated by its samples (photon/merge_bias.h): sums over the samples of
+// one pass, which gather the same photons.
 struct PassBias {
   double sum[3] = {0, 0, 0};  // of w·B; B: estimate of a sample
   uint32_t count = 0;         // samples
@@ -140,8 +140,9 @@ struct PassBias {
   void Add(const Color& bias, float filterWeight);
 };
 
-// Sums over the passes of a pixel, taken as independent. g: PassBias::sum, its luminance where it is squared; c:
-// PassBias::count. Those of ended stages of an adaptive film are scaled by N / n, as in PixelStages, squares of that.
+// Sums over the passes of a pixel, taken as independent. g: PassBias::sum, in squares its luminance; c:
+// PassBias::count. The terms of completed stages of an adaptive film are scaled by N / n, as in PixelStages, and their
+// squares by its square.
 struct PixelBias {
   CompensatedSum sum[3];             // Σ g
   CompensatedSum squares, products;  // Σ g², Σ c g
@@ -155,7 +156,7 @@ struct PixelBias {
 
 // The parts of the relative error of an image at 95 % confidence (Film::PartsOfError).
 struct ErrorParts {
-  double noise = 0;  // half the width of the interval of what differs between seeds
+  double noise = 0;  // half the width of the confidence interval of the noise, which differs between seeds
   double bias = 0;   // bound of the root mean square bias of the pixels, by merging photons
   double Both() const;
 };
@@ -175,15 +176,14 @@ class Film {
   const PixelSums& Pixel(int x, int y) const { return pixels_[Index(x, y)]; }
 
   const std::vector<std::string>& Layers() const { return layers_; }
-  // Layers that samples are split into: without those of bands and kHalfLayer.
+  // Number of layers that samples are split into: without those of bands and kHalfLayer.
   size_t SplitLayers() const { return layers_.size() - bandLayers_ - (hasHalf_ ? 1 : 0); }
   bool HasLayers() const { return SplitLayers() > 0; }
   bool HasHalf() const { return hasHalf_; }
   // Adds a camera sample, whose value is added to the pixel itself, to kHalfLayer.
   void AddToHalf(int x, int y, const Color& value, float filterWeight);
   bool HasBands() const { return bandLayers_ > 0; }
-  // Sets the wavelengths of the next pass, whose samples are added by AddToBands, and its splats, and which is then
-  // counted by CountWhite.
+  // Sets the wavelengths of the next pass: of its samples (AddToBands), its splats, and its white (CountWhite).
   void SetLanes(const LanesInBands& lanes) { lanes_ = lanes; }
   // Adds a camera sample, whose value is added to the pixel itself, to the bands. `value`: by lane.
   void AddToBands(int x, int y, const Color& value, float filterWeight);
@@ -197,7 +197,7 @@ class Film {
 
   // An empty list for splats onto this film.
   SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
-  // Adds the paths of the lists, in order, which belong to the sample of index `sample`. The result does not depend on
+  // Adds the paths of the lists, in order; all belong to the sample of index `sample`. The result does not depend on
   // how a sequence of paths is divided into lists and calls, nor on the number of threads.
   void AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads, uint32_t sample = 0);
   // Number of light paths so far, including those without a splat.
@@ -208,20 +208,21 @@ class Film {
   bool IsAdaptive() const { return isAdaptive_; }
   // Adaptive films. `passes` were added to the current stage.
   void CountPasses(uint32_t passes) { passes_ += passes; }
-  // Ends the stage, in which each pixel must have a sample: Pixel() begins anew.
+  // Ends the stage, in which each pixel must have a sample: the sums of Pixel() start again from 0.
   void EndStage();
-  // The samples of a pixel in one pass, which have been added to it; of films with groups.
+  // Adds the samples of a pixel in one pass, which have been added to the pixel already, to its groups; for films with
+  // groups.
   void AddGroup(int x, int y, const PixelSums& pass) { groups_[Index(x, y)].Add(pass); }
   bool HasGroups() const { return !groups_.empty(); }
   // Makes an empty film keep estimates of the bias of merging photons. It does not change the picture.
   void KeepBias();
   bool KeepsBias() const { return !bias_.empty(); }
-  // The estimates of the samples of a pixel in one pass, which are added to the pixel itself by Pixel().
+  // Adds the bias estimates of the samples of a pixel in one pass. The samples themselves are added by Pixel().
   void AddBias(int x, int y, const PassBias& pass) { bias_[Index(x, y)].Add(pass); }
   // Estimate of the bias of a pixel (an index into the crop, row by row), 0 unless estimates are kept. Signed.
   double Bias(size_t pixel, int channel) const;
 
-  // Statistics of the ended stages: passes, and of a pixel (an index into the crop, row by row) its stages, its
+  // Statistics of the completed stages: passes; and for a pixel (an index into the crop, row by row) its stages, its
   // luminance, the sums of squared deviations of the luminance of its samples and of their squares, and the variance of
   // all splats.
   uint64_t EndedPasses() const { return endedPasses_; }
@@ -235,8 +236,8 @@ class Film {
   uint64_t Samples(size_t pixel) const { return pixels_[pixel].count + (isAdaptive_ ? stages_[pixel].count : 0); }
   size_t Pixels() const { return pixels_.size(); }
 
-  // Counts a pass in which radiance 1 of a white scene was `white` in each channel, since it was estimated at a few
-  // wavelengths. The picture is divided by the mean over all passes: white stays white, whatever their number.
+  // Counts a pass in which radiance 1 of a white scene was estimated as `white`, by channel, from a few wavelengths.
+  // The picture is divided by the mean over all passes, so that white stays white after any number of them.
   void CountWhite(const std::array<double, 3>& white);
 
   // Adds all samples and light paths of another film of the same size, crop and layers, as stages of their own if they
@@ -250,8 +251,8 @@ class Film {
   double SampledFraction() const;
   // Writes everything except size, crop and layers.
   void Save(ByteWriter& bytes) const;
-  // Reads what Save has written, into an empty film of the same size, crop and layers. Throws an Error for anything
-  // else, and then leaves the film as it was.
+  // Reads the data of Save into an empty film of the same size, crop and layers. Throws an Error for any other data,
+  // and then leaves the film unchanged.
   void Load(ByteReader& bytes);
 
   // The image: R, G, B and variance.R, .G, .B, the variance of the mean of a pixel (sample variance / n; an upper bound
@@ -261,10 +262,10 @@ class Film {
 
   // Estimated relative error of the image at 95 % confidence. Its noise is 1.96 · sqrt(mean variance of the pixel
   // means) / mean luminance. The mean variance is the upper end of its own confidence interval ([Fay97], see film.cpp),
-  // since it is not known well if a few bright samples make up most of it. `largestSample`: luminance of the brightest
+  // because it is uncertain if a few bright samples make up most of it. `largestSample`: luminance of the brightest
   // sample that may not have occurred yet. Infinite with fewer than 2 samples per pixel, or fewer than 2 light paths. 0
-  // without variance if `largestSample` is 0, and for an image that is still black after 4096 samples per pixel. Its
-  // bias is that of merging photons (film_bias.cpp), 0 unless estimates of it are kept.
+  // without variance if `largestSample` is 0, and for an image that is still black after 4096 samples per pixel. The
+  // bias is that of merging photons (film_bias.cpp), 0 unless its estimates are kept.
   ErrorParts PartsOfError(double largestSample = 0) const;
   double RelativeError(double largestSample = 0) const { return PartsOfError(largestSample).Both(); }
 
@@ -302,7 +303,7 @@ class Film {
   double Value(size_t pixel, int channel) const;
   double LayerValue(size_t pixel, size_t layer, size_t channel) const;
   double VarianceOfMean(size_t pixel, int channel) const;
-  double VarianceOfSplats(size_t pixel, int channel) const;  // its part
+  double VarianceOfSplats(size_t pixel, int channel) const;  // the variance of a pixel by its splats
   float SplatShare(size_t pixel) const;                      // kSplatShareChannel
   double FourthOfMean(size_t pixel) const;
   double WhiteScale(size_t channel) const;

@@ -63,7 +63,7 @@ SplatList::Lanes Film::LanesOfSplats() const {
   return lanes;
 }
 
-// 0 for a band that no pass had a wavelength in.
+// 0 for a band in which no pass had a wavelength.
 double Film::BandScale(size_t band) const {
   return bandWeights_[band] > 0 ? static_cast<double>(whitePasses_) / bandWeights_[band] : 0.0;
 }

@@ -1,13 +1,13 @@
-// The bias of merging photons: what the samples of a pixel estimate of it, and the bound that errors are stated with.
+// The bias of merging photons: its estimate from the samples of a pixel, and the bound that is part of stated errors.
 //
 // An estimate B of a pixel's bias has noise of its own, about twice that of the light that is merged. The square of the
 // bias is therefore estimated by B² less the variance of B, which is unbiased; pixel by pixel it may be negative, and
 // is then taken to be 0 in the mean over many pixels.
 //
-// B is the bias where that is proportional to the square of the radius, in regions of smooth light. At the edges of
-// light and of surfaces the bias is proportional to the radius itself, and the difference of the estimates at r and r /
-// √2, of which B is 2, has to be multiplied by 1 / (1 - 1 / √2). The pixels with edges are not known, so the bound uses
-// this factor everywhere.
+// B estimates the bias where this is proportional to the square of the radius, in regions of smooth light. At the edges
+// of light and of surfaces the bias is proportional to the radius itself, and the difference of the estimates at r and
+// r / √2, of which B is 2, has to be multiplied by 1 / (1 - 1 / √2). The pixels with edges are not known, so the bound
+// uses this factor everywhere.
 #include <algorithm>
 #include <cmath>
 
@@ -99,7 +99,7 @@ bool Film::BiasIsFinite() const {
          std::all_of(biasStages_.begin(), biasStages_.end(), isFinite);
 }
 
-// As CameraValue.
+// Normalised like CameraValue.
 double Film::Bias(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
   if (!KeepsBias()) return 0;
@@ -110,8 +110,9 @@ double Film::Bias(size_t pixel, int channel) const {
   return white * sum / AdaptiveDivisor(pixel);
 }
 
-// B² and the variance of B. Of the sum T of k passes, each g of c samples, of which the mean of a sample is m, the
-// variance is Σ (g - c m)² / (1 - Σ c² / k²), with scaled g and c: the divisor is 1 - 1 / k if all c are equal.
+// B² and the variance of B. The variance of the sum T of k passes, each with the sum g of c samples, where m is the
+// mean of a sample, is Σ (g - c m)² / (1 - Σ c² / k²), with scaled g and c: the divisor is 1 - 1 / k if all c are
+// equal.
 Film::BiasMoments Film::BiasMomentsOf(size_t pixel) const {
   const PixelSums& samples = pixels_[pixel];
   const bool hasStages = endedPasses_ > 0;
@@ -128,7 +129,7 @@ Film::BiasMoments Film::BiasMomentsOf(size_t pixel) const {
   if (!(passes >= 2 && freedom > 0)) return {};
   const double total = LuminanceOf(sums.sum), mean = total / passes;
   const double deviations = sums.squares.Value() + mean * (mean * sums.weights - 2 * sums.products.Value());
-  double white = 0;  // that of the luminance: the channels' own are alike after a few passes
+  double white = 0;  // factor of the luminance: those of the channels are nearly equal after a few passes
   for (size_t c = 0; c < 3; ++c) white += Color::kLuminance[c] * WhiteScale(c);
   const double square = white * white / (divisor * divisor);
   return {square * total * total, square * std::max(0.0, deviations) / freedom};

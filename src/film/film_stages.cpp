@@ -17,7 +17,7 @@ bool AllFinite(const double* values, size_t count) {
   return std::all_of(values, values + count, [](double value) { return std::isfinite(value); });
 }
 
-// Samples of the half layer among n of an adaptive pixel: every second.
+// Number of samples of the half layer among n of an adaptive pixel: every second one.
 uint64_t HalfOf(uint64_t n) {
   return (n + 1) / 2;
 }
@@ -106,9 +106,9 @@ double Film::CurrentLayerMean(size_t pixel, size_t layer, size_t channel) const 
   return layerSums_[pixel * layers_.size() + layer][channel].Value() / static_cast<double>(pixels_[pixel].count);
 }
 
-// Half of an estimate of the pixel that is not correlated with what remains of the pixel, and has the same variance. Of
-// as many even samples (E, their mean) as odd ones (O) it is E; else a E + (1 - a) O, with a² / e + (1 - a)² / o = 2 /
-// n.
+// Half of an estimate of the pixel that is uncorrelated with the rest of the pixel and has the same variance. With as
+// many even samples (mean E) as odd ones (mean O) the estimate is E; otherwise a E + (1 - a) O, with a² / e + (1 - a)²
+// / o = 2 / n.
 double Film::CurrentHalf(size_t pixel, size_t channel) const {
   const PixelSums& samples = pixels_[pixel];
   const auto n = static_cast<double>(samples.count), e = static_cast<double>(HalfOf(samples.count)), o = n - e;
@@ -119,13 +119,13 @@ double Film::CurrentHalf(size_t pixel, size_t channel) const {
   return 0.5 * (a * even / e + (1 - a) * (all - even) / o);
 }
 
-// Factor that makes splats of the half layer half of all.
+// Factor that scales the splats of the half layer to half of all splats.
 double Film::HalfShareOfSplats() const {
   return halfPaths_ == 0 ? 1 : 0.5 * static_cast<double>(lightPaths_) / static_cast<double>(halfPaths_);
 }
 
-// Variance of CameraValue. All samples of a pixel have one variance, whatever their stage: that of a stage with one
-// sample is known by the others.
+// Variance of CameraValue. All samples of a pixel have the same variance, whatever their stage: for a stage with one
+// sample it is estimated from the others.
 double Film::CameraVariance(size_t pixel, int channel) const {
   const PixelSums& current = pixels_[pixel];
   const PixelStages& stages = stages_[pixel];
@@ -172,7 +172,7 @@ Film::PixelStatistics Film::StatisticsOf(size_t pixel) const {
   return statistics;
 }
 
-// Splats go on in the next stage, whose rates depend on those so far alone.
+// Splats continue in the next stage, whose sampling rates depend on the splats up to here alone.
 void Film::NoteSplats(size_t pixel) {
   if (lightPaths_ < 2) return;
   const auto paths = static_cast<double>(lightPaths_);
@@ -213,7 +213,7 @@ void Film::AddStages(const Film& other) {
   endedPasses_ += other.endedPasses_;
 }
 
-// Throws an Error for numbers that no render leaves.
+// Throws an Error for numbers that no render produces.
 void Film::CheckStages() const {
   constexpr uint64_t kMost = uint64_t{1} << 30;
   bool isSound = endedPasses_ <= kMost && passes_ <= kMost;
@@ -249,7 +249,7 @@ std::vector<float> Film::PixelErrors(double imageError) const {
     double error = std::numeric_limits<double>::infinity();
     double half = kNinetyFive * deviations[i];
     if (!biases.empty()) half = std::hypot(half, std::sqrt(biases[i]));
-    // While little is known of the picture, pixels that are still black may yet be lit.
+    // While the error of the picture is large, pixels that are still black may yet be lit.
     const bool mayBeLit = half == 0 && luminances[i] <= 0 && !(imageError <= kKnown);
     if (!tooFew && !mayBeLit) error = half == 0 ? 0 : half / luminance;
     errors[i] = static_cast<float>(error);

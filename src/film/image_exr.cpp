@@ -98,7 +98,7 @@ Image ReadOpenExr(const std::filesystem::path& path) {
   return image;
 }
 
-// Layers that half cannot hold whatever their values: identifiers of mattes are bits, and what is squared is soon below
+// True for layers that half cannot represent: the identifiers of mattes are bit patterns, and squares soon fall below
 // the smallest half, 6e-8.
 bool NeedsFloat(const std::string& channel) {
   for (const char* part : {"Crypto", "variance.", "relativeError", "bias.", "feature."}) {
@@ -107,7 +107,7 @@ bool NeedsFloat(const std::string& channel) {
   return false;
 }
 
-// The types of the channels: those of a layer have the same.
+// The types of the channels, the same for all channels of a layer.
 std::vector<Imf::PixelType> TypesOf(const Image& image, ExrPrecision precision) {
   std::vector<Imf::PixelType> types(image.channels.size(), Imf::FLOAT);
   if (precision == ExrPrecision::Float) return types;

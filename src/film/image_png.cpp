@@ -17,7 +17,7 @@ namespace lampyr {
 
 namespace {
 
-// State of a file that is read. What libpng allocates is freed with it.
+// State of a file that is being read. libpng's allocations are freed with it.
 struct PngFile {
   std::FILE* file = nullptr;
   png_structp png = nullptr;
@@ -46,11 +46,11 @@ struct PngLayout {
   bool saysSrgb = false;
 };
 
-// Reads the header, and asks for whole samples of 8 or 16 bits: no palette, no transparent colour. False: it failed.
+// Reads the header, and requests whole samples of 8 or 16 bits: no palette, no transparent colour. False: it failed.
 bool BeginReading(PngFile& file, PngLayout& layout) {
   if (setjmp(png_jmpbuf(file.png))) return false;
   png_init_io(file.png, file.file);
-  png_set_chunk_cache_max(file.png, 1);  // keeps no texts, which may unpack to gigabytes
+  png_set_chunk_cache_max(file.png, 1);  // discards texts, which may unpack to gigabytes
   png_read_info(file.png, file.info);
   const int storedBits = png_get_channels(file.png, file.info) * png_get_bit_depth(file.png, file.info);
   layout.storedBytesPerPixel = std::max(storedBits / 8, 1);
@@ -61,7 +61,7 @@ bool BeginReading(PngFile& file, PngLayout& layout) {
   layout.height = png_get_image_height(file.png, file.info);
   layout.channels = png_get_channels(file.png, file.info);
   layout.bits = png_get_bit_depth(file.png, file.info);
-  // A PNG is sRGB if it says so, or has a gamma near that of sRGB, or says nothing.
+  // A PNG is sRGB if it is declared so, if its gamma is near that of sRGB, or if it declares neither.
   constexpr double kOfSrgb = 1 / 2.2, kTolerance = 0.01;
   double gamma = kOfSrgb;
   png_get_gAMA(file.png, file.info, &gamma);

@@ -28,7 +28,7 @@ class LayerSample {
     part.sum[1] += static_cast<double>(value.g);
     part.sum[2] += static_cast<double>(value.b);
   }
-  // Layers with a contribution, in the order of the first one.
+  // Layers with a contribution, in order of their first one.
   const std::vector<uint32_t>& Met() const { return met_; }
   double Sum(uint32_t layer, int channel) const { return parts_[layer].sum[channel]; }
 

@@ -23,9 +23,9 @@ using Planes = std::array<std::vector<double>, 3>;  // R, G, B
 struct Measured {
   std::vector<Color> colors;
   std::optional<Planes> variance;  // of the pixels' means
-  std::vector<float> sharing;      // by which factor a sum over pixels has more variance; empty: 1
+  std::vector<float> sharing;      // factor of a pixel's variance in a sum over pixels; empty: 1
   bool isOfOneSample = false;      // its variances are 0, because one sample has none
-  bool isDenoised = false;         // the errors of pixels that are near each other are alike
+  bool isDenoised = false;         // the errors of nearby pixels are correlated
   float relativeRounding = 0;      // of the stored format, half or float
   double samples = 0;              // per pixel; 0: not known
   double brightness = 0;           // mean of all values
@@ -83,7 +83,7 @@ float RelativeRounding(const std::vector<Color>& colors) {
   return allHalf ? 0x1p-11f : 0x1p-22f;
 }
 
-// Factors of the variances of pixels in sums over them: splats are in several pixels at once.
+// Factors of the variances of pixels in sums over them, because splats are in several pixels at once.
 std::vector<float> ReadSharing(const Image& image) {
   std::vector<float> factors;
   const int channel = image.ChannelIndex(kSplatShareChannel);
@@ -183,9 +183,8 @@ void MeasureBias(const Measured& a, const Measured& b, ImageDifference& differen
   difference.biasInterval = Ratio(1.959963984540054 * std::sqrt(varianceOfMean), std::abs(difference.meanB));
 }
 
-// Variance of a sum over pixels in which an image has found nothing, where another has found `expected`: that of
-// samples as bright as the picture, as rare as that makes them. A pixel that only the tail of a filter reaches is an
-// example.
+// Variance of a sum over pixels that is 0 in one image and `expected` in another: that of samples as bright as the
+// picture, and as rare as `expected` implies. Example: a pixel that only the tail of a filter reaches.
 double VarianceOfNothing(const Measured& image, double expected) {
   return image.samples > 0 ? std::abs(expected) * image.brightness / image.samples : 0.0;
 }
@@ -206,15 +205,15 @@ std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, 
   if (sumA == 0 && varianceA == 0) varianceA = VarianceOfNothing(a, sumB);
   if (sumB == 0 && varianceB == 0) varianceB = VarianceOfNothing(b, sumA);
   const double variance = varianceA + varianceB;
-  // The rounding of a constant region is the same in all its pixels: it adds up like the values.
+  // The rounding of a constant region is the same in all its pixels, so that it adds up like the values.
   const double rounding = RoundingOf(sumA, sumB, a, b);
   const bool isRounding = std::abs(sumA - sumB) <= rounding;
   if (variance == 0 && isRounding) return std::nullopt;
   return isRounding ? 0 : (sumA - sumB) / std::sqrt(variance + rounding * rounding / 3);
 }
 
-// Half of the family-wise rate goes to the largest z, half to the sum of squares; both are divided among the channels.
-// chiSquared is that of the worst channel: two channels that agree must not hide one that does not.
+// Half of the family-wise rate is given to the largest z, half to the sum of squares; both are divided among the
+// channels. chiSquared is that of the worst channel: two channels that agree must not hide one that does not.
 BlockTest TestBlocks(const Measured& a, const Measured& b, int width, int height, int blockSize, double rate) {
   BlockTest test;
   test.blockSize = blockSize;

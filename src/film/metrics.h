@@ -24,7 +24,7 @@ struct BlockTest {
 // light paths per sample as the image has pixels, and has a variance even then.
 bool IsOfOneSample(const Image& image);
 
-// Result of a comparison. CannotSay is no agreement: nothing was tested.
+// Result of a comparison. CannotSay does not mean agreement: nothing was tested.
 enum class Verdict { Equal, Agree, Differ, CannotSay };
 const char* NameOf(Verdict verdict);  // "equal", "agree", "differ", "cannot say"
 
@@ -41,7 +41,7 @@ struct ImageDifference {
   BlockTest blockTest;
   // Equal: no value differs by more than rounding. Agree, Differ: result of the block test.
   Verdict verdict = Verdict::CannotSay;
-  std::string reason;  // of CannotSay, in words
+  std::string reason;  // for CannotSay, in words
 };
 
 // Compares two images. Throws an Error if they differ in size or crop, have no R, G, B (nor gray), or contain values

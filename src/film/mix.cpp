@@ -62,8 +62,8 @@ void Scale(const Color& factor, const std::string& layer, Image& image) {
   }
 }
 
-// Variances, bands of the spectrum and layers besides the groups, where all light has one factor. The bands need one
-// without colour.
+// Scales variances, bands of the spectrum and layers besides the groups, valid if all light has one factor. The bands
+// require a gray factor.
 void ScaleOthers(const Color& factor, const std::vector<std::string>& groups, Image& image) {
   for (size_t channel = 0; channel < image.channels.size(); ++channel) {
     if (!IsBandLayer(image.channels[channel])) continue;
@@ -79,7 +79,7 @@ bool IsGray(const Color& factor) {
   return factor.r == factor.g && factor.g == factor.b;
 }
 
-// The channels for which `isKept` is true.
+// The image reduced to the channels for which `isKept` is true.
 Image Kept(const Image& image, const std::function<bool(const std::string&)>& isKept) {
   std::vector<std::string> kept;
   for (const std::string& channel : image.channels) {
@@ -90,8 +90,8 @@ Image Kept(const Image& image, const std::function<bool(const std::string&)>& is
   return result;
 }
 
-// Channels that are valid for the unmixed light alone: halves of the samples, the picture before denoising, strategies
-// and errors.
+// True for channels that are valid for the unmixed light alone: halves of the samples, the picture before denoising,
+// strategies and errors.
 bool IsOfParts(const std::string& channel) {
   for (const char* prefix :
        {"half.", "noisy.", "weighted.", "unweighted.", "relativeError", "bias.", kSplatShareChannel}) {
@@ -100,7 +100,7 @@ bool IsOfParts(const std::string& channel) {
   return false;
 }
 
-// Drops the channels that are unknown once some layers alone have changed, and all layers besides `known`.
+// Drops the channels that are unknown after a change of single layers, and all layers besides `known`.
 Image WithoutUnknown(const Image& image, const std::vector<std::string>& known) {
   const std::vector<std::string> layers = ColorLayers(image);
   const auto isIn = [](const std::vector<std::string>& names, const std::string& name) {
@@ -135,7 +135,7 @@ void AddUp(const std::vector<std::string>& groups, const std::vector<LayerFactor
   }
 }
 
-// Adds what a layer changes by.
+// Adds the change of a layer to the picture.
 void AddDifference(const LayerFactor& each, Image& mixed) {
   const std::array<size_t, 3> picture = ChannelsOfLayer(mixed, ""), layer = ChannelsOfLayer(mixed, each.layer);
   for (size_t i = 0; i < mixed.data.size(); i += mixed.channels.size()) {
@@ -184,7 +184,7 @@ std::vector<std::string> GroupLayers(const Image& image) {
 
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   Check(image, factors);
-  // The groups of a denoised picture are those of the noisy one: their sum is not the picture.
+  // In a denoised picture the groups are those of the noisy one, so that their sum is not the picture.
   const bool isDenoised = image.ChannelIndex("noisy.R") >= 0;
   const std::vector<std::string> groups = isDenoised ? std::vector<std::string>() : GroupLayers(image);
   const auto isGroup = [&](const std::string& layer) {
@@ -207,7 +207,7 @@ Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   }
   CheckIsFinite(image, mixed);
   if (mixesOthers) {
-    // Groups and other layers may hold some of the light that has changed.
+    // Groups and other layers may contain some of the light that has changed.
     mixed = WithoutUnknown(mixed, mixesGroups ? std::vector<std::string>() : named);
     mixed.metadata.erase(kGroupsMetadata);
     return mixed;

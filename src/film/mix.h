@@ -1,4 +1,4 @@
-// Mixing the layers of a picture: what it would be with lights dimmed, tinted, or off, without a render.
+// Mixing the layers of a picture: the picture with lights dimmed, tinted or off, without another render.
 #pragma once
 
 #include <string>
@@ -21,12 +21,12 @@ std::vector<std::string> ColorLayers(const Image& image);
 // The layers of light groups, which add up to the picture; empty if it has none.
 std::vector<std::string> GroupLayers(const Image& image);
 
-// The picture with each of the layers times its factor. Light groups are added up, so that groups at 0 leave nothing;
-// of other layers, and in denoised pictures, the picture gets the difference. Only layers that are valid for the mixed
-// picture are kept, so that it can be mixed again: of light groups, all groups; of other layers, those that were named,
-// if no group was, taken to have no light in common. Other layers, variances and bands of the spectrum stay only where
-// all groups have one factor, bands only where that has no colour. Throws an Error for a layer that the image does not
-// have, or that is named twice, and for values that would not be finite.
+// The picture with each of the layers multiplied by its factor. Light groups are summed, so that groups at 0 contribute
+// nothing; for other layers, and in denoised pictures, the change of the layer is added to the picture. Only layers
+// that are valid for the mixed picture are kept, so that it can be mixed again: for light groups, all groups; for other
+// layers, those that were named, if no group was, assumed to have no light in common. Other layers, variances and bands
+// of the spectrum are kept only if all groups have one factor, bands only if that is gray. Throws an Error for a layer
+// that the image does not have, or that is named twice, and for results that are not finite.
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors);
 
 }  // namespace lampyr

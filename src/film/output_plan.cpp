@@ -15,7 +15,7 @@ constexpr size_t kMostPairs = size_t{1} << 24;
 
 }  // namespace
 
-// The positions of all expressions together. Before those of each expression stands one for the camera.
+// Compiles the positions of all expressions together. One position for the camera precedes those of each expression.
 class OutputPlan::Compiler {
   static constexpr uint32_t kWordBits = 64;
 
@@ -35,7 +35,7 @@ class OutputPlan::Compiler {
     }
   }
 
-  // A set that is being put together.
+  // A set under construction.
   class Gathered {
    public:
     explicit Gathered(size_t words) : bits_(words) {}
@@ -148,7 +148,7 @@ class OutputPlan::Compiler {
     }
   }
 
-  // For each event, the positions beyond those of `set`, `beyond` of each, that match it.
+  // For each event, the positions that match it among the successors of `set` (`beyond`: successors of each position).
   std::array<Set, kPathEvents> Beyond(const Set& set, const std::vector<Set>& beyond) {
     gathered_.Clear();
     ForEachPosition(set, [&](uint32_t p) { gathered_.Add(beyond[p]); });
@@ -167,7 +167,7 @@ class OutputPlan::Compiler {
                   " states together: simplify them, or render some of them apart");
   }
 
-  // State: the positions that the path may be at.
+  // A state is the set of positions that the path may have reached.
   void CompileFromCamera() {
     camera_.Of(cameras_);
     for (size_t state = 0; state < camera_.Count(); ++state) {
@@ -180,7 +180,8 @@ class OutputPlan::Compiler {
     }
   }
 
-  // State: the positions of the next symbol, as seen from the camera, from where the rest of the path may be matched.
+  // A state is the set of positions of the next symbol, as seen from the camera, from which the rest of the path
+  // matches.
   void CompileFromLight(const std::vector<LightSourceName>& lights) {
     std::map<std::pair<std::string, std::string>, uint32_t> known;  // by name and group
     const auto startOf = [&](const LightSourceName& source) {

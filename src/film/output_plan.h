@@ -42,7 +42,7 @@ class OutputPlan {
   uint32_t AfterFromLight(uint32_t state, PathEvent event) const {
     return fromLight_[state][static_cast<size_t>(event)];
   }
-  // The layers of a path whose subpaths have these states; the event where they meet is in one of both.
+  // The layers of a path whose subpaths have these states; the event at the joint vertex is in one of the two.
   std::span<const uint32_t> LayersOf(uint32_t camera, uint32_t light) const {
     const auto [first, end] = met_[static_cast<size_t>(camera) * fromLight_.size() + light];
     return {lists_.data() + first, lists_.data() + end};

@@ -18,10 +18,10 @@ constexpr uint8_t kVolume = BitOf(PathEvent::Volume);
 constexpr uint8_t kScatterings = kReflections | kTransmissions;
 constexpr size_t kMostPositions = 4096;
 constexpr int kMostRepeats = 255;
-// Symbols and parentheses, repeated ones as often as they are: empty ones have no positions.
+// Symbols and parentheses, repeated ones counted as often as they are repeated: empty ones have no positions.
 constexpr size_t kMostParts = 8 * kMostPositions;
 constexpr const char* kTooLong = "the expression is too long with its repetitions";
-constexpr int kDeepest = 100;  // parentheses in parentheses
+constexpr int kDeepest = 100;  // nesting depth of parentheses
 
 using Positions = std::vector<uint32_t>;  // increasing
 
@@ -90,7 +90,7 @@ class ExpressionParser {
   [[noreturn]] void Fail(const std::string& what) const {
     throw Error("character " + std::to_string(at_ + 1) + " of \"" + Excerpt() + "\": " + what);
   }
-  // The text, or what is around here.
+  // The text, or an excerpt around the current character.
   std::string Excerpt() const {
     constexpr size_t most = 120;
     if (text_.size() <= most) return text_;
@@ -159,7 +159,8 @@ class ExpressionParser {
     return part;
   }
 
-  // What is between `begin` and here is `first`; further ones are parsed from the same text.
+  // Repetition of the text between `begin` and the current character: `first` is its first copy; further ones are
+  // parsed from the same text.
   Part Counted(size_t begin, Part first) {
     const size_t quantifier = at_;
     ++at_;
@@ -249,7 +250,7 @@ class ExpressionParser {
     }
   }
 
-  // Adds what a symbol matches.
+  // Adds the events and sources that a symbol matches.
   void ReadSymbol(PathExpression::Position& position) {
     const auto add = [&](LightSources::Kind kind) { position.sources.terms.push_back({kind, ""}); };
     const char symbol = Peek();
@@ -338,7 +339,7 @@ class ExpressionParser {
       position.sources.terms.push_back({isMedium ? LightSources::Kind::Media : LightSources::Kind::AnyLight, ""});
   }
 
-  // A name in quotes of either kind; before them may be a backslash, as shells and scene files want it.
+  // A name in quotes of either kind, each optionally escaped by a backslash, as in shells and scene files.
   std::string QuotedName() {
     const size_t begin = at_;
     if (Peek() == '\\') ++at_;
@@ -374,7 +375,7 @@ class ExpressionParser {
     return part;
   }
 
-  // A path ends at its light, and has it nowhere else.
+  // Requires the light of a path to be at its end and nowhere else.
   void CheckEnd() const {
     const auto isSource = [&](uint32_t i) {
       const LightSources& sources = expression_.positions_[i].sources;

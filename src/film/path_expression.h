@@ -1,5 +1,5 @@
-// Light path expressions: regular expressions over the events of a light path, from the camera on. [Heckbert90] has the
-// notation, OSL and RenderMan the grammar.
+// Light path expressions: regular expressions over the events of a light path, starting at the camera. The notation is
+// that of [Heckbert90], the grammar that of OSL and RenderMan.
 //
 //   C                      the camera: each expression starts with it
 //   R T                    reflection, transmission      D G S   diffuse, glossy, specular (perfectly smooth)
@@ -18,7 +18,7 @@
 
 namespace lampyr {
 
-// What happens at a vertex of a path.
+// The event at a vertex of a path.
 enum class PathEvent : uint8_t {
   DiffuseReflection,
   GlossyReflection,
@@ -71,7 +71,7 @@ class PathExpression {
 
   // The names of lights in it, each once.
   std::vector<std::string> NamedLights() const;
-  // The same of paths from the named light or group alone.
+  // The same expression restricted to paths from the named light or group.
   PathExpression OnlyFrom(const std::string& light) const;
 
  private:

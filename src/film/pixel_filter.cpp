@@ -90,8 +90,8 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
   }
   double sumBefore = 0;
   for (size_t part = 0, i = 0; part <= kParts; ++part) {
-    // The outermost parts end where the filter does but for kTail: a narrow Gaussian has little mass in most of its
-    // radius, over which the part would be spread.
+    // The outermost parts end where the filter has only kTail of its mass left: a narrow Gaussian has little mass in
+    // most of its radius, over which the part would be spread.
     constexpr double kTail = 1e-7;
     const double share = absoluteSum * std::clamp(static_cast<double>(part) / kParts, kTail, 1 - kTail);
     while (i + 1 < kSteps && absoluteSums[i + 1] < share) ++i;

@@ -36,9 +36,9 @@ class PixelFilter {
   // The factors along each axis, each normalised to ∫ = 1.
   float EvaluateX(float offset) const { return EvaluateAxis(*x_, offset); }
   float EvaluateY(float offset) const { return EvaluateAxis(*y_, offset); }
-  // Number of samples with weights as of Sample, one per pixel, whose mean has the variance of one splat: a splat is
-  // spread over all pixels in whose filter it is, (∫|f|)² / ∫f² of them on average (∫f = 1). Box of a pixel's width: 1;
-  // Gaussian of σ = 0.5: 3.
+  // Sample count of splats in weights: the number of samples with weights as in Sample, one per pixel, whose mean has
+  // the variance of one splat. A splat is spread over all pixels in whose filter it is, on average (∫|f|)² / ∫f² of
+  // them (∫f = 1). Box of a pixel's width: 1; Gaussian of σ = 0.5: 3.
   double SplatCount() const { return x_->splatCount * y_->splatCount; }
   // The mean of Offset::weight²: (∫|f|)², 1 if f >= 0 everywhere.
   double SquaredWeight() const { return x_->squaredWeight * y_->squaredWeight; }

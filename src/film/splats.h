@@ -23,7 +23,7 @@ struct Splat {
   uint32_t path = 0;  // index within the list
 };
 
-// What a splat gives to a layer.
+// The part of a splat in a layer.
 struct SplatPart {
   Point2 film;
   Color value;
@@ -38,8 +38,8 @@ class SplatList {
   SplatList(const Point2& reachMin, const Point2& reachMax, const SensorResponse& sensor)
       : reachMin_(reachMin), reachMax_(reachMax), sensor_(sensor) {}
 
-  // From now on a splat is added to the bands of its lanes, too: of lane i to channel channels[i] of layer layers[i],
-  // as factors[i] of the value; factor 0: none.
+  // Splats added after this call are also added to the bands of their lanes: lane i to channel channels[i] of layer
+  // layers[i], scaled by factors[i]; factor 0: none.
   struct Lanes {
     uint32_t layers[3] = {0, 0, 0};
     int channels[3] = {0, 0, 0};
@@ -58,7 +58,7 @@ class SplatList {
   bool Reaches(const Point2& film) const {
     return film.x >= reachMin_.x && film.x < reachMax_.x && film.y >= reachMin_.y && film.y < reachMax_.y;
   }
-  // False if the value is negative or not finite; it is then left out.
+  // False if the value is negative or not finite; it is then not added.
   bool Add(const Point2& film, const Color& value) {
     if (!Reaches(film)) return true;
     const Color scaled = value * sensor_.Scale(value);
@@ -68,13 +68,13 @@ class SplatList {
       AddToBands(film, scaled);
     return true;
   }
-  // Adds the share of a valid splat that is in a layer.
+  // Adds the part of a valid splat that is in a layer.
   void AddToLayer(const Point2& film, const Color& value, const Color& share, uint32_t layer) {
     if (Reaches(film)) parts_.push_back({film, sensor_.Balance(value * sensor_.Scale(value) * share), layer});
   }
 
   const std::vector<Splat>& Splats() const { return splats_; }
-  // Their parts in layers.
+  // Parts of the splats in layers.
   const std::vector<SplatPart>& Parts() const { return parts_; }
   uint32_t Paths() const { return paths_; }
 

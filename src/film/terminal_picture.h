@@ -15,7 +15,7 @@ std::vector<unsigned char> DisplayPixels(const Image& image, float exposureStops
 // ends with a reset and a newline.
 std::string TerminalPicture(const Image& image, int columns, int lines, float exposureStops, ToneMap toneMap);
 
-// True if the environment says that the terminal shows colours of 24 bits (COLORTERM).
+// True if the environment declares that the terminal shows 24-bit colours (COLORTERM).
 bool TerminalHasTrueColor();
 
 }  // namespace lampyr

@@ -9,7 +9,7 @@ namespace lampyr {
 
 namespace {
 
-// Neighbouring patches overlap by this much of a parameter, so that no ray slips between them.
+// Overlap of neighbouring patches in parameters, so that no ray slips between them.
 constexpr double kOverlap = 1e-9;
 
 struct Corners {
@@ -32,7 +32,7 @@ T Interpolate(const std::vector<T>& values, const std::array<uint32_t, 4>& q, co
   return Interpolate(values[q[0]], values[q[1]], values[q[2]], values[q[3]], p);
 }
 
-// Roots of a u² + b u + c, those that leave [0,1] or do not exist as NaN.
+// Roots of a u² + b u + c; NaN for those that do not exist or are outside of [0,1].
 std::pair<double, double> Roots(double a, double b, double c) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (a == 0) return {none, -c / b};  // a parallelogram, or seen along a plane that divides it evenly
@@ -52,8 +52,8 @@ bool IsParameter(double x) {
 int IntersectPatch(const BilinearMesh& mesh, uint32_t patch, const RayDouble& ray, PatchHit hits[2]) {
   const Corners k = GetCorners(mesh, patch);
   const Vector3d& d = ray.direction;
-  // The line p(u, ·) meets the ray where the triple product of their difference and both directions is 0: quadratic in
-  // u.
+  // The line p(u, ·) intersects the ray where the triple product of their difference and both directions is 0:
+  // quadratic in u.
   const double a = glm::dot(glm::cross(k.p10 - k.p00, k.p01 - k.p11), d);
   const double c = glm::dot(glm::cross(k.p00 - ray.origin, d), k.p01 - k.p00);
   const double b = glm::dot(glm::cross(k.p10 - ray.origin, d), k.p11 - k.p10) - (a + c);
@@ -82,7 +82,8 @@ Point2 PatchUv(const BilinearMesh& mesh, uint32_t patch, const Point2& parameter
 
 namespace {
 
-// Tangents by the patch's own uv: the chain rule through the inverse of d(s,t)/d(u,v). Zero where that is singular.
+// Tangents with respect to the patch's own uv: the chain rule through the inverse of d(s,t)/d(u,v). Zero where that is
+// singular.
 void ToTextureTangents(const BilinearMesh& mesh, const std::array<uint32_t, 4>& q, const Point2& p,
                        SurfacePoint& point) {
   const auto& uv = mesh.uvs;

@@ -12,14 +12,14 @@ struct PatchHit {
   Point2 uv{0.0f};
 };
 
-// The hits with t in (tMin, tMax], nearest first; returns how many.
+// Finds the hits with t in (tMin, tMax], nearest first; returns their number.
 int IntersectPatch(const BilinearMesh& mesh, uint32_t patch, const RayDouble& ray, PatchHit hits[2]);
 
 // uv of the patch's own vertices where it has some, the parameters themselves otherwise.
 Point2 PatchUv(const BilinearMesh& mesh, uint32_t patch, const Point2& parameters);
 
-// Position, error, normals, uv and tangents. `towards` is the fallback normal of a degenerate patch. The indices are
-// left alone.
+// Sets position, error, normals, uv and tangents, but not the indices. `towards` is the fallback normal of a degenerate
+// patch.
 void EvaluatePatch(const BilinearMesh& mesh, uint32_t patch, const Point2& parameters, const Vector3& towards,
                    SurfacePoint& point);
 

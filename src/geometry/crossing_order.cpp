@@ -16,7 +16,7 @@ void SortByDistance(std::vector<Crossing>& crossings) {
 
 namespace {
 
-// The medium that the ray comes from; kSameMedium: any.
+// The medium in front of the surface, as seen from the ray; kSameMedium: any.
 int32_t MediumBefore(const SceneTables& tables, const Crossing& crossing) {
   const PrimitiveRecord& record = tables.primitives[crossing.primitive];
   if (crossing.medium == kSameMedium) return kSameMedium;
@@ -27,9 +27,10 @@ bool Follows(int32_t before, int32_t medium) {
   return before == medium || before == kSameMedium;
 }
 
-// Where a ray is that has crossed nothing before these, and then crosses `next` (null: nothing): in the medium from
-// which one of them comes and to which no other leads. If all are led to, they are a cycle, and the medium is the one
-// behind it. If nothing is behind it, an edge of a single shape is touched from outside.
+// The medium in front of a group of coincident crossings, none of which has been passed, and which `next` follows
+// (null: nothing): the medium from which one of them starts and to which no other leads. If each is led to, they form a
+// cycle, and the medium is the one behind it. If nothing is behind it, the ray touches an edge of a single shape from
+// outside.
 std::optional<int32_t> FindStart(const SceneTables& tables, std::span<const Crossing> group, const Crossing* next) {
   for (const Crossing& crossing : group) {
     const int32_t before = MediumBefore(tables, crossing);
@@ -61,7 +62,7 @@ void OrderGroup(const SceneTables& tables, std::optional<int32_t> medium, std::s
   }
 }
 
-// Leaves out what an edge that two triangles or patches share reports once more; returns the new end.
+// Drops the duplicates of crossings at an edge that two triangles or patches share; returns the new end.
 size_t DropDoubled(size_t begin, size_t end, std::vector<Crossing>& crossings) {
   for (size_t i = begin + 1; i < end;) {
     const Crossing crossing = crossings[i];
@@ -85,7 +86,7 @@ size_t DropDoubled(size_t begin, size_t end, std::vector<Crossing>& crossings) {
 }  // namespace
 
 void OrderCoincident(const SceneTables& tables, double largest, std::vector<Crossing>& crossings) {
-  constexpr double kRounding = 32 * 0x1p-23;  // of a distance, in units of the coordinates on the way
+  constexpr double kRounding = 32 * 0x1p-23;  // error of a distance, in units of the coordinates on the way
   std::optional<int32_t> medium;
   for (size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
     end = begin + 1;

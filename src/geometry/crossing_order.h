@@ -8,18 +8,18 @@
 
 namespace lampyr {
 
-// By increasing t. At equal t a ray leaves one medium before it enters the next; then by primitive, so that a product
-// does not depend on the order of traversal.
+// Sorts by increasing t. At equal t a ray leaves one medium before it enters the next; then by primitive, so that a
+// product does not depend on the order of traversal.
 void SortByDistance(std::vector<Crossing>& crossings);
 
-// Puts boundaries that coincide, up to rounding, into an order in which the ray passes from medium to medium: each
-// begins in the medium that the one before it has ended in, if such an order exists. Boxes that touch and boundaries
-// within each other that share a face are then passed without a false medium in between, although their distances are
-// rounded independently. What an edge that two triangles or patches share reports twice is left once.
+// Orders boundaries that coincide, up to rounding, such that the ray passes from medium to medium: each starts in the
+// medium in which the one before it has ended, if such an order exists. Touching boxes, and nested boundaries that
+// share a face, are then passed without a false medium in between, although their distances are rounded independently.
+// A crossing that is reported twice at an edge of two triangles or patches is kept once.
 //
-// What cannot be repaired here: a ray that touches an edge in the silhouette of a mesh within rounding may be reported
-// by one of its two faces alone. Of random rays through a ball of 80 000 triangles, 2 in 10⁷ leave it in the wrong
-// medium; the next boundary sets it right.
+// Not repaired: a ray that touches an edge in the silhouette of a mesh within rounding may be reported by one of its
+// two faces alone. Of random rays through a ball of 80 000 triangles, 2 in 10⁷ leave it in the wrong medium, up to the
+// next boundary.
 //
 // `crossings` are sorted, and their distances stay sorted. `largest`: the largest coordinate of the ray's origin.
 void OrderCoincident(const SceneTables& tables, double largest, std::vector<Crossing>& crossings);

@@ -77,7 +77,7 @@ int PartsOfFlat(const Segment& b, double radius) {
   return static_cast<int>(std::clamp(std::ceil(lines / CurveSet::kLinesPerFlatSegment), 1.0, double(kMostParts)));
 }
 
-// The radius that a segment is to be accurate to: of a pointed one, a tenth of the wide end's.
+// The radius relative to which a segment has to be accurate: for a pointed one, a tenth of the wide end's.
 double ThinnestOf(double a, double b) {
   return std::max(std::min(a, b), 0.1 * std::max(a, b));
 }
@@ -210,12 +210,12 @@ void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Poin
 
   const Vector3 travelled = direction * t;
   point.position = origin + travelled;
-  // Embree finds curve hits by iteration, to some thousandths of the radius.
+  // Embree finds curve hits iteratively, to a few thousandths of the radius.
   point.positionError = (Abs(origin) + Abs(travelled)) * Gamma(4) + Vector3(4e-3f * radius);
   const Vector3 offset = point.position - axis;
   point.Ng = point.Ns = CurveNormal(curves, segment, u, along, offset, direction);
 
-  // v runs as pbrt-v4's does: to the side that direction × tangent points to, also on the back of a ribbon.
+  // v runs as in pbrt-v4: to the side that direction × tangent points to, also on the back of a ribbon.
   const bool isRibbon = curves.kind == CurveSet::Kind::Ribbon;
   const Vector3 view = !isRibbon ? direction : glm::dot(point.Ng, direction) > 0 ? point.Ng : -point.Ng;
   const Vector3 across = SafeNormalize(glm::cross(view, along), Frame::FromNormal(along).x);

@@ -3,9 +3,9 @@
 // Embree traces them: Flat turns towards the ray, Cylinder is a swept round tube, Ribbon follows given normals. Texture
 // coordinates are pbrt-v4's: u along each segment, v across the width.
 //
-// Embree draws a flat segment as CurveSet::kLinesPerFlatSegment straight lines. Bent segments are divided until the
-// lines stay within a hundredth of the half width of the curve: where on its width a ray meets a fibre decides how the
-// fibre scatters.
+// Embree renders a flat segment as CurveSet::kLinesPerFlatSegment straight lines. Bent segments are divided until the
+// lines stay within a hundredth of the half width of the curve, because the scattering of a fibre depends on the hit's
+// position across its width.
 #pragma once
 
 #include "base/error.h"
@@ -29,11 +29,11 @@ struct CurveParameters {
 // Widths scale by the transform's mean scale (the cube root of its determinant). Throws Error.
 CurveSet MakeCurves(const CurveParameters& parameters);
 
-// Number of segments that MakeCurves makes of it: bent ones of flat curves are divided, into 16 at most. Throws Error.
+// Number of segments that MakeCurves returns: bent ones of flat curves are divided, into 16 at most. Throws Error.
 size_t CountDividedSegments(const CurveParameters& parameters);
 
-// Position, error, normals, uv and tangents of the hit at origin + t·direction with curve parameter `u`. All in the
-// space of the curves; the indices are left alone.
+// Sets position, error, normals, uv and tangents of the hit at origin + t·direction with curve parameter `u`, in the
+// space of the curves. Does not set the indices.
 void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Point3& origin, const Vector3& direction,
                    float t, SurfacePoint& point);
 

@@ -19,9 +19,9 @@ class CustomSurface {
   // Bounds of the surface from shutter time `begin` to `end`.
   virtual Bounds3 GetBounds(float begin, float end) const = 0;
 
-  // The t of the nearest hit with t in (ray.tMin, ray.tMax] at shutter time `time`. The same ray finds the same hit
-  // again, also with another tMax beyond it. Where `point` is given: position, error bound, normals and uv; the indices
-  // are left alone.
+  // The t of the nearest hit with t in (ray.tMin, ray.tMax] at shutter time `time`. Must be deterministic: the same ray
+  // finds the same hit, also with another tMax beyond it. If `point` is given, sets position, error bound, normals and
+  // uv, but not the indices.
   virtual std::optional<double> Intersect(const RayDouble& ray, float time, SurfacePoint* point) const = 0;
 };
 

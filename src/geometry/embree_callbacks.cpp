@@ -62,7 +62,7 @@ void Filter(const RTCFilterFunctionNArguments* arguments, bool isShadow) {
   const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
   const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
   const RayHit rayHit{ray.tfar, hit.geomID, hit.primID, hit.instID[0], hit.u, hit.v};
-  // A round curve is entered and left: the normal tells which.
+  // A round curve is entered and left; the normal distinguishes the two hits.
   const bool leaves = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z > 0;
   const Meeting at{Record(arguments->geometryUserPtr), hit.geomID, hit.primID, hit.instID[0], leaves ? 1u : 0u};
   if (at.record.hasNoInside) {

@@ -1,5 +1,6 @@
-// Private to the geometry: what Embree calls back. Intersection of quadrics, bilinear patches and custom surfaces as
-// user geometry, and filters for cut-outs. Every callback's user pointer is a PrimitiveRecord; rays come one at a time.
+// Private to the geometry: the callbacks of Embree. Intersection of quadrics, bilinear patches and custom surfaces as
+// user geometry, and filters for cut-outs. The user pointer of each callback is a PrimitiveRecord; rays come one at a
+// time.
 #pragma once
 
 #include <embree3/rtcore.h>

@@ -77,7 +77,7 @@ RTCGeometry NewGeometry(RTCDevice device, const CurveSet& curves) {
   auto* normals = ribbon ? static_cast<Normal3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0,
                                                                          RTC_FORMAT_FLOAT3, sizeof(Normal3), 4 * count))
                          : nullptr;
-  if (!vertices || !indices || (ribbon && !normals)) return geometry;  // the device's error says it
+  if (!vertices || !indices || (ribbon && !normals)) return geometry;  // reported by the device as an error
   if (curves.kind == CurveSet::Kind::Flat) rtcSetGeometryTessellationRate(geometry, CurveSet::kLinesPerFlatSegment);
   for (size_t i = 0; i < count; ++i) {
     indices[i] = static_cast<uint32_t>(4 * i);
@@ -111,7 +111,7 @@ RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_
   if (!geometry) return nullptr;
   rtcSetGeometryMask(geometry, visibleTo);
   rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
-  // User geometry decides in its own callbacks what passes.
+  // User geometry handles cut-outs and thin surfaces in its own callbacks.
   if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {
     rtcSetGeometryIntersectFilterFunction(geometry, PassFilter);
     rtcSetGeometryOccludedFilterFunction(geometry, TransmitFilter);

@@ -1,5 +1,5 @@
-// Private to the geometry: primitives and instances as geometries of Embree, not yet committed. What Embree could not
-// allocate is an error of the device.
+// Private to the geometry: primitives and instances as geometries of Embree, not yet committed. A failed allocation is
+// reported as an error of the device.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -8,8 +8,8 @@
 
 namespace lampyr {
 
-// Refers to the record, which has to outlive it. `visibleTo`: kinds of rays (VisibleTo). Null for a shape without
-// primitives.
+// The geometry refers to the record, which has to outlive it. `visibleTo`: kinds of rays (VisibleTo). Null for a shape
+// without primitives.
 RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibleTo);
 
 RTCGeometry NewInstance(RTCDevice device, const InstanceRecord& instance, RTCScene object);

@@ -14,7 +14,7 @@ struct TraceContext;
 
 // Immutable after construction; all methods may be called from any thread.
 //
-// Triangles are intersected watertight ([Woop13]): a ray through an edge or a vertex that triangles share meets one of
+// Triangles are intersected watertight ([Woop13]): a ray through an edge or a vertex that triangles share hits one of
 // them.
 class FewSurfaces {
  public:

@@ -16,7 +16,7 @@ Point3d Transformed(const Affine& map, const Point3d& p) {
   return glm::dmat3(map.linear) * p + Point3d(map.translation);
 }
 
-// Of the plane of a triangle. NaN or infinite for a line along it.
+// Distance to the plane of a triangle. NaN or infinite for a line in the plane.
 double PlaneDistance(const TriangleMesh& mesh, uint32_t triangle, const RayDouble& ray) {
   const auto& t = mesh.triangles[triangle];
   const Point3d p0(mesh.positions[t[0]]), p1(mesh.positions[t[1]]), p2(mesh.positions[t[2]]);
@@ -24,7 +24,7 @@ double PlaneDistance(const TriangleMesh& mesh, uint32_t triangle, const RayDoubl
   return glm::dot(normal, p0 - ray.origin) / glm::dot(normal, ray.direction);
 }
 
-// The nearer of two hits to `about`, or NaN.
+// The one of two hits that is nearer to `about`, or NaN.
 template <class Hit>
 double Nearest(const Hit* hits, int count, double about) {
   double nearest = std::numeric_limits<double>::quiet_NaN();
@@ -59,7 +59,7 @@ double FineDistance(const SceneTables& tables, const FineLine& line, float time,
     ray.direction = glm::dmat3(toObject.linear) * line.direction;
   }
   const double fine = DistanceTo(tables.primitives[hit.primitive], hit.patch, ray, about);
-  // A line that grazes a triangle may meet its plane anywhere.
+  // The distance to the plane is useless for a line that grazes the triangle.
   constexpr double kMost = 1e-4;
   const double size = std::max({std::abs(line.start.x), std::abs(line.start.y), std::abs(line.start.z)});
   return std::abs(fine - about) <= kMost * (std::abs(about) + size) ? fine : about;

@@ -13,12 +13,12 @@ struct FineLine {
   Point3d start{0.0};
   Vector3d direction{0.0};  // unit, up to rounding
   double length = std::numeric_limits<double>::infinity();
-  // The end is a point in space whose side of each surface matters within rounding. Otherwise surfaces within rounding
-  // of an end are as the ray in float sees them, which is offset from the surface that it starts on.
+  // True if the end is a point in space whose side of each surface matters within rounding. Otherwise surfaces within
+  // rounding of an end are those that the ray in float hits, which is offset from the surface that it starts on.
   bool isFineAtStart = false, isFineAtEnd = false;
 };
 
-// What GeometryScene::Trace finds along a FineLine.
+// Result of GeometryScene::Trace along a FineLine.
 struct LineHit {
   bool isHit = false;
   bool isRejected = false;                             // GeometryScene::RejectedRays

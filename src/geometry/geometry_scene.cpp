@@ -27,15 +27,15 @@ namespace lampyr {
 
 namespace {
 
-// The functions by which Embree is entered are compiled for SSE. They wait for the upper halves of vector registers
-// that are in use: up to a fifth of the time of a render.
+// The functions through which Embree is entered are compiled for SSE. They stall while the upper halves of vector
+// registers are in use: up to a fifth of the time of a render.
 inline void ClearUpperHalves() {
 #if defined(__AVX__)
   _mm256_zeroupper();
 #endif
 }
 
-// ThreadSanitizer does not see how Embree's own threads wait for each other: then it has none.
+// ThreadSanitizer does not understand the synchronisation of Embree's own threads: without them there is none.
 #if defined(__SANITIZE_THREAD__)
 constexpr const char* kDeviceSettings = "frequency_level=simd256,threads=1";
 #else
@@ -82,7 +82,7 @@ struct GeometryScene::Implementation {
   DeviceHandle device;
   std::vector<SceneHandle> objectScenes;
   SceneHandle scene;
-  std::unique_ptr<const FewSurfaces> few;  // null: rays are Embree's
+  std::unique_ptr<const FewSurfaces> few;  // null: Embree traces the rays
   Bounds3 bounds;
   float largest = kFarthest;
   bool hasTints = false;       // some thin surface is not clear
@@ -107,7 +107,7 @@ struct GeometryScene::Implementation {
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
   void BuildScenes();
-  // Inlined: a call costs as much as the rest of what they do besides Embree.
+  // Inlined: a call costs as much as all else in these functions besides Embree.
   [[gnu::always_inline]] bool Query(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
   [[gnu::always_inline]] bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
   [[gnu::always_inline]] bool Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
@@ -115,7 +115,7 @@ struct GeometryScene::Implementation {
   LineHit Trace(const Ray& ray, double ahead, const FineLine& line, uint32_t kinds, RayHit& hit,
                 TraceContext& trace) const;
   Color Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds, TraceContext& trace) const;
-  // `largest`: coordinate of the start of the ray.
+  // `largest`: the largest coordinate of the start of the ray.
   void OrderCrossings(double largest, std::vector<Crossing>& crossings, bool withBoundaries) const;
   void DropCutOuts(std::vector<Crossing>& crossings) const;
 
@@ -158,8 +158,8 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
   }
 }
 
-// A surface that separates media does so for all rays. To those that do not see it, it is a boundary alone: the medium
-// at a point is then the same on every path.
+// A surface that separates media does so for all rays. For rays to which it is invisible it is a boundary alone, so
+// that the medium at a point is the same on every path.
 void GeometryScene::Implementation::SetMedia(const GeometryAttributes& attributes, PrimitiveRecord& record) {
   if (record.As<CurveSet>() || record.As<CustomSurface>())
     throw Error("curves and custom surfaces cannot separate participating media");
@@ -201,8 +201,8 @@ void GeometryScene::Implementation::AddInstance(const GeometryInstance& instance
     tables.instances.push_back(record);
   };
   if (!instance.motion) return add(instance.toRender, instance.toObject, 0, 1);
-  // Embree spreads the keys of a geometry evenly over the time that it is there: before and after its motion something
-  // is another geometry.
+  // Embree spreads the keys of a geometry evenly over the time in which it exists: the parts before, during and after
+  // the motion are separate geometries.
   const Motion& motion = *instance.motion;
   const Affine &first = motion.Keys().front(), &last = motion.Keys().back();
   if (motion.Begin() > 0) add(first, first.Inverse(), 0, motion.Begin());
@@ -240,7 +240,7 @@ void GeometryScene::Implementation::VisitBoxes(const Visit& visit) const {
     for (size_t i = 0; i < object.size(); ++i) {
       Bounds3 placed;
       if (!instance.motion) AddPlacedBox(instance.toRender, object[i], placed);
-      // A point moves in straight lines from key to key: where it is at the keys bounds it.
+      // A point moves along straight lines between keys: its positions at the keys bound it.
       if (instance.motion)
         for (const Affine& key : instance.motion->Keys()) AddPlacedBox(key, object[i], placed);
       visit(placed, instance.motion != nullptr, description.objects[instance.object].entries[i].attributes);
@@ -321,7 +321,7 @@ void FillRay(const Ray& ray, uint32_t kinds, float tMax, RTCRay& out) {
   out.flags = 0;
 }
 
-// A list of the thread, emptied: valid until the thread asks again.
+// The thread's list, emptied; valid until the thread's next call.
 std::vector<Crossing>& ThreadCrossings() {
   thread_local std::vector<Crossing> crossings;
   crossings.clear();
@@ -337,7 +337,8 @@ void GeometryScene::Implementation::OrderCrossings(double largest, std::vector<C
   if (withBoundaries) OrderCoincident(tables, largest, crossings);
 }
 
-// The nearest hit of an accepted ray. `trace` collects what Embree visits, in no order and also behind the hit.
+// The nearest hit of an accepted ray. `trace` collects the crossings that Embree visits, in no order and also behind
+// the hit.
 inline bool GeometryScene::Implementation::Query(const Ray& ray, uint32_t kinds, RayHit& hit,
                                                  TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
@@ -368,8 +369,8 @@ inline bool GeometryScene::Implementation::Query(const Ray& ray, uint32_t kinds,
   return true;
 }
 
-// The ray is accepted. The crossings of `trace`, where they are wanted, are empty before and become what the ray passed
-// before the hit.
+// The ray is accepted. The crossings of `trace`, if recorded, are empty before the call, and afterwards those in front
+// of the hit.
 inline bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit,
                                                  TraceContext& trace) const {
   const bool isHit = Query(ray, kinds, hit, trace);
@@ -383,18 +384,18 @@ inline bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds,
 
 namespace {
 
-// A ray along a line that is fine at its start begins so far ahead of it, in units of the coordinates: boundaries on
-// which the start is within rounding are met, and whether they are on the line is decided in double. The more ahead,
-// the more grazing a ray may be.
+// Distance, in units of the coordinates, by which a ray starts ahead of a line that is fine at its start. Boundaries
+// within rounding of the start are then hit, and whether they are on the line is decided in double. A larger distance
+// allows rays at more grazing angles.
 constexpr double kAhead = 0x1p-16;
-// Distances that differ by less are equal, in the same units.
+// Distances that differ by less are equal; in the same units.
 constexpr double kSamePlace = 1e-14;
 
 double Largest(const Vector3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// The ray `by` longer at its start.
+// The ray extended by `by` at its start.
 Ray FromAhead(const Ray& ray, const FineLine& line, double by) {
   Ray moved = ray;
   moved.origin = Point3(line.start - by * line.direction);
@@ -422,7 +423,7 @@ LineHit GeometryScene::Implementation::Trace(const Ray& ray, double ahead, const
   if (found.isHit) hit.t = static_cast<float>(found.t);
   if (trace.crossings->empty()) return found;
   RefineCrossings(tables, line, ray.time, ahead, *trace.crossings);
-  // A boundary in the place of the surface that is hit is behind it, like one that is hit at the same float.
+  // A boundary in the place of the surface that is hit counts as behind it, as for hits at equal float distances.
   const double end = found.isHit ? found.t - kSamePlace * (found.t + Largest(line.start)) : found.t;
   std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < end); });
   OrderCrossings(Largest(line.start), *trace.crossings, trace.recordsBoundaries);
@@ -482,7 +483,7 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
   return isHit;
 }
 
-// False: an accepted ray is stopped.
+// False: something stops the ray, which is accepted.
 inline bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRay shadowRay;
@@ -498,8 +499,8 @@ inline bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds
   return !(shadowRay.tfar < 0);
 }
 
-// The ray is accepted. The crossings of `trace` are empty before; afterwards they are in order, unless the result is 0.
-// Null: no surface lets rays pass.
+// The ray is accepted. The crossings of `trace` are empty before the call; afterwards they are in order, unless the
+// result is 0. If they are null, no surface lets rays pass.
 inline Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   if (!Passes(ray, kinds, trace)) return Color(0.0f);
   if (!trace.crossings || trace.crossings->empty()) [[likely]]
@@ -508,8 +509,8 @@ inline Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32
   return lampyr::Transmittance(*trace.crossings);
 }
 
-// The ray is longer at the ends that are fine, so that it meets the boundaries there. If something stops it, that may
-// be beyond an end: then what it meets first decides.
+// The ray is extended at the ends that are fine, so that it hits the boundaries there. A surface that stops it may thus
+// be beyond an end: in that case its nearest hit decides.
 Color GeometryScene::Implementation::Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds,
                                                    TraceContext& trace) const {
   Ray longer = ray;

@@ -20,17 +20,17 @@ class AlphaSource {
   virtual float Alpha(const Point2& uv, const Point3& position, const Normal3& Ng) const = 0;
 };
 
-// A surface without thickness, such as a pane of thin glass: part of the light that meets it goes straight on, the rest
-// is scattered by the surface's material. The straight part is not scattering: shadow rays, scattered rays and photons
-// all carry it on alike. Implemented by materials.
+// A surface without thickness, such as a pane of thin glass: part of the incident light goes straight on, the rest is
+// scattered by the surface's material. The straight part is not scattering: shadow rays, scattered rays and photons all
+// transport it. Implemented by materials.
 class ThinSurface {
  public:
   virtual ~ThinSurface() = default;
-  // Part of the rays that goes straight on, in [0,1], at the cosine `cosTheta` > 0 to the shading normal.
+  // The fraction of rays that go straight on, in [0,1], at the cosine `cosTheta` > 0 to the shading normal.
   virtual float TransmittedFraction(float cosTheta) const = 0;
-  // The shading normal: that of the point, unless a map says another one.
+  // The shading normal: that of the point, unless a normal or bump map replaces it.
   virtual Normal3 NormalAt(const SurfacePoint& point) const { return point.Ns; }
-  // Factor on that part, in [0,1] a channel.
+  // Colour factor on the straight part, in [0,1] per channel.
   virtual Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const = 0;
   // True if the tint is white everywhere.
   virtual bool IsClear() const = 0;
@@ -82,9 +82,9 @@ struct GeometryInstance {
   uint32_t object = 0;
   Affine toRender;
   Affine toObject;
-  // Index of the first light of this instance: entry light indices of the object are relative to it.
+  // Index of the first light of this instance: light indices of the object's entries are relative to it.
   int32_t firstLight = 0;
-  std::shared_ptr<const Motion> motion = nullptr;  // null: stays. Otherwise the transforms above are not looked at
+  std::shared_ptr<const Motion> motion = nullptr;  // null: static. Otherwise the transforms above are ignored
 };
 
 // Choice of the code that intersects rays. BySize: FewSurfaces for small scenes, Embree for all others.
@@ -94,7 +94,7 @@ struct GeometryDescription {
   std::vector<GeometryEntry> entries;
   std::vector<GeometryObject> objects;
   std::vector<GeometryInstance> instances;
-  // Embree's robust mode: no leaks along shared edges, 20-25 % slower. Surfaces that are few have none either way.
+  // Embree's robust mode: no leaks along shared edges, 20-25 % slower. FewSurfaces has no leaks either way.
   bool robust = true;
   Tracer tracer = Tracer::BySize;
 };
@@ -110,25 +110,24 @@ class GeometryScene {
   GeometryScene(const GeometryScene&) = delete;
   GeometryScene& operator=(const GeometryScene&) = delete;
 
-  // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` is untouched.
-  // A ray passes cut-outs and thin surfaces with the probability of their transmittance, and boundaries between media
-  // always. `crossings` becomes what it passed before the hit, in order: boundaries, and thin surfaces with their tints
-  // as transmittances. Empty in scenes whose thin surfaces are all clear and that have no boundaries.
+  // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: no hit; `hit` is unchanged. A
+  // ray passes cut-outs and thin surfaces with the probability of their transmittance, and boundaries between media
+  // always. Sets `crossings` to the surfaces passed before the hit, in order: boundaries, and thin surfaces with their
+  // tints as transmittances. Empty in scenes whose thin surfaces are all clear and that have no boundaries.
   //
   // The medium changes from crossing to crossing (Crossing::medium), by increasing t. Boundaries at equal t, up to
-  // rounding, are ordered such that the ray passes from medium to medium; where that leaves a choice, it leaves one
-  // before it enters another. A crossing sets the medium and counts nothing: the edge of a thin surface may be reported
-  // twice.
+  // rounding, are ordered such that the ray passes from medium to medium; where several orders do, it leaves one medium
+  // before it enters another. Media are set and not nested, because the edge of a thin surface may be reported twice.
   bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const;
 
   // The same along a line in double, which `ray` follows up to rounding: distances of the hit and of the crossings are
-  // those along the line, and where it is fine at its start nothing within rounding behind it is met. `hit.t` is the
-  // distance along the line, rounded. The length of the line is not looked at.
+  // along the line, and at a start that is fine no surface within rounding behind it is hit. `hit.t` is the distance
+  // along the line, rounded. The length of the line is ignored.
   LineHit Trace(const Ray& ray, const FineLine& line, uint32_t kinds, RayHit& hit,
                 std::vector<Crossing>& crossings) const;
 
-  // The same, where the crossings matter by their product alone: `tint`. A ray that is rejected (RejectedRays) hits
-  // nothing and carries nothing: `tint` is 0.
+  // The same for callers that need only the product of the crossings, `tint`. A ray that is rejected (RejectedRays)
+  // hits nothing and has transmittance 0.
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint) const;
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const {
     Color tint;
@@ -138,7 +137,8 @@ class GeometryScene {
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint, std::vector<Crossing>& crossings) const;
 
   // Transmittance of (0, ray.tMax): 0 behind an opaque surface; otherwise the product over all cut-outs and thin
-  // surfaces, by increasing t. It is the expected value of Intersect's outcome. 0 for a ray that is rejected.
+  // surfaces, by increasing t. This is the expected value of a ray that passes by Intersect. 0 for a ray that is
+  // rejected.
   Color Transmittance(const Ray& ray, uint32_t kinds) const;
   // The same with the crossings that Trace lists. Cut-outs are factors of the result, not crossings. Empty if the
   // result is 0.
@@ -162,12 +162,12 @@ class GeometryScene {
   MediumSurfaces SurfacesOf(int32_t medium) const;
   // MediumSurfaces of all media, by index, in one pass over the surfaces.
   std::vector<MediumSurfaces> SurfacesOfAll(size_t media) const;
-  // Boxes of the surfaces that separate media and let light pass, over the shutter.
+  // Boxes of the surfaces that separate media and are not opaque, over the shutter.
   std::vector<Bounds3> BoundaryBoxes() const;
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene
   BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene
-  // Count of rays that Embree would not survive: not finite, without a direction, or from beyond all bounds.
+  // Number of rejected rays: not finite, without a direction, or from beyond all bounds.
   uint64_t RejectedRays() const;
 
  private:

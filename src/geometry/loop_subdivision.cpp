@@ -1,5 +1,5 @@
 // See loop_subdivision.h. A half-edge h = 3·face + k runs from the face's corner k to the next; its twin runs back in
-// the neighbouring face. Refinement knows the twins of the children without searching.
+// the neighbouring face. Refinement computes the twins of the children without searching.
 #include "geometry/loop_subdivision.h"
 
 #include <numeric>
@@ -54,10 +54,10 @@ void CheckInput(const std::vector<Point3>& positions, const std::vector<Face>& f
   }
 }
 
-// Joins the half edges of one edge. Where more than two faces meet, each is joined to the first free one before it that
-// runs the other way, in the order of the faces: published meshes have such edges, and renderers take them.
+// Joins the half edges of one edge. Where more than two faces share it, each is joined to the first free one before it
+// that runs the other way, in the order of the faces: published meshes have such edges, and renderers accept them.
 void PairHalfEdges(Mesh& mesh, std::span<const std::pair<uint64_t, uint32_t>> halfEdges, const FileLocation& where) {
-  // Free ones so far all run the same way: those from `next` on.
+  // All free half edges, from `next` on, run the same way.
   std::vector<uint32_t> free;
   size_t next = 0;
   for (const auto& [edge, b] : halfEdges) {
@@ -221,7 +221,7 @@ void GetRing(const Mesh& mesh, uint32_t start, std::vector<Point3d>& ring) {
   } while (h != start);
 }
 
-// Tangents of the limit surface by the masks of [Hoppe94]; their product is against the winding.
+// Tangents of the limit surface by the masks of [Hoppe94]; their cross product points against the winding.
 Vector3d InteriorNormal(const std::vector<Point3d>& ring) {
   Vector3d s(0.0), t(0.0);
   for (size_t j = 0; j < ring.size(); ++j) {
@@ -252,7 +252,7 @@ Vector3d BoundaryNormal(const Point3d& p, const std::vector<Point3d>& ring) {
   return glm::cross(along, inwards);
 }
 
-// Also against the winding; for vertices whose tangents vanish.
+// Also against the winding; used for vertices whose tangents vanish.
 Vector3d FaceNormal(const Mesh& mesh, uint32_t h) {
   const Point3d& p = mesh.positions[mesh.From(h)];
   return glm::cross(mesh.positions[mesh.From(Previous(h))] - p, mesh.positions[mesh.To(h)] - p);

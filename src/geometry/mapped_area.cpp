@@ -10,14 +10,14 @@ namespace lampyr {
 
 namespace {
 
-// Half a cube of directions: n and -n are the same.
+// Resolution of half a cube of directions: n and -n are the same.
 constexpr int kSide = 12;
 constexpr int kCells = 3 * kSide * kSide;
 
 size_t CellOf(const Vector3d& n) {
   const Vector3d size = Abs(n);
   const int face = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  // Equal angles, more or less.
+  // Approximately equal angles.
   const auto along = [&](int axis) {
     const double turned = std::atan(n[axis] / n[face]) * (4 / 3.14159265358979323846);
     return std::clamp(static_cast<int>((turned + 1) * (0.5 * kSide)), 0, kSide - 1);
@@ -128,7 +128,7 @@ double MeanStretchOverSphere(const glm::dmat3& m) {
 double MeanStretchOverCircle(const glm::dmat3& m) {
   const double a = glm::dot(m[0], m[0]), b = glm::dot(m[0], m[1]), c = glm::dot(m[1], m[1]);
   const double mean = 0.5 * (a + c), spread = std::hypot(0.5 * (a - c), b), high = mean + spread;
-  // The product of both is the determinant, which does not cancel as their difference does.
+  // The product of both eigenvalues is the determinant, which avoids the cancellation of their difference.
   const double low = high > 0 ? std::max(a * c - b * b, 0.0) / high : 0.0;
   // R_G(0, x, y) is half the quarter circle's integral of sqrt(x cos² + y sin²).
   return 4 * 0.31830988618379067154 * CarlsonRG(0, high, low);

@@ -9,20 +9,20 @@ namespace lampyr {
 
 namespace {
 
-// Unit vectors far from each other and from the axes and diagonals along which scenes are built.
+// Unit vectors far from each other, and from the axes and diagonals to which scenes are usually aligned.
 constexpr std::array<Vector3, 3> kDirections = {Vector3(0.57735f, 0.31127f, 0.75483f),
                                                 Vector3(-0.43021f, 0.82114f, -0.37496f),
                                                 Vector3(0.23904f, -0.61237f, -0.75358f)};
 
-// The first change of a ray that says what it comes from; null: none does.
+// The first change of a ray whose medium in front is known; null: there is none.
 const MediumChange* FirstToSay(const std::vector<MediumChange>& changes) {
   const auto said =
       std::find_if(changes.begin(), changes.end(), [](const auto& one) { return one.before != kSameMedium; });
   return said == changes.end() ? nullptr : &*said;
 }
 
-// The medium that the first change of a ray comes from. With `ofBoundaries` what stops light says nothing: an open
-// sheet is met from both sides, whatever it says of the other one.
+// The medium in front of the first change of a ray. With `ofBoundaries`, surfaces that stop light are ignored: an open
+// surface is hit from both sides, whatever medium it declares on the other one.
 std::optional<int32_t> FirstMedium(const std::vector<MediumChange>& changes, bool ofBoundaries) {
   for (const MediumChange& change : changes) {
     if (ofBoundaries && !change.isBoundary) return std::nullopt;
@@ -39,8 +39,8 @@ std::optional<int32_t> LastMedium(const std::vector<MediumChange>& changes) {
   return std::nullopt;
 }
 
-// The medium in which rays from `medium` end. Those that something stops do not count, unless all are stopped: what is
-// behind the floor of an open scene is not where its sky is.
+// The medium in which rays from `medium` end. Rays that are stopped do not count, unless all are: behind the floor of
+// an open scene there is no sky.
 std::optional<int32_t> ExteriorOf(std::span<const std::vector<MediumChange>> rays, int32_t medium) {
   const auto isFree = [](const std::vector<MediumChange>& changes) {
     return std::all_of(changes.begin(), changes.end(), [](const MediumChange& change) { return change.isBoundary; });
@@ -62,7 +62,7 @@ uint32_t BrokenLink(const std::vector<MediumChange>& changes, int32_t start) {
   int32_t behind = start;
   bool wasBoundary = false;
   for (const MediumChange& change : changes) {
-    // A wall may reach from the water that it is said to be in into the air.
+    // A wall declared to be in water may extend into the air.
     if (change.isOpaque && !wasBoundary) break;
     if (behind != kSameMedium && change.before != kSameMedium && behind != change.before) return change.primitive;
     if (change.isOpaque) break;
@@ -90,7 +90,7 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
 
 namespace {
 
-// The changes on the first ray that meets a boundary, of rays to points all over the scene; none if none does.
+// The changes on the first ray with a boundary, of rays to points all over the scene; empty if there is none.
 std::vector<MediumChange> ChangesTowardsScene(const GeometryScene& geometry, const Point3& position, float time,
                                               const Normal3& normal) {
   if (!geometry.HasBoundaries()) return {};
@@ -122,7 +122,7 @@ Changes ChangesAround(const GeometryScene& geometry, const Point3& position, flo
   return changes;
 }
 
-// What the rays say. `ofBoundaries`: as of FirstMedium.
+// Result of the rays' votes. `ofBoundaries`: as for FirstMedium.
 FoundMedium MediumSaidBy(const Changes& changes, bool ofBoundaries) {
   FoundMedium found;
   std::array<std::optional<int32_t>, kDirections.size()> said;
@@ -152,7 +152,7 @@ FoundMedium Find(const GeometryScene& geometry, const Point3& position, float ti
     const std::vector<MediumChange> towards = ChangesTowardsScene(geometry, position, time, normal);
     found.medium = FirstMedium(towards, true);
     found.isOfBoundary = found.medium.has_value();
-    // The other rays tell more of what is around the scene: some of them leave it.
+    // The other rays are more informative about the surroundings of the scene: some of them leave it.
     const std::array all = {changes[0], changes[1], changes[2], towards};
     if (found.medium) found.exterior = ExteriorOf(all, *found.medium);
   }

@@ -16,8 +16,9 @@ RayDouble ToDouble(const RTCRay& ray) {
           static_cast<double>(ray.tnear), static_cast<double>(ray.tfar)};
 }
 
-// A number in [0,1) that is a function of the ray and the hit alone: a ray sees the same cut-out in any order of
-// traversal and on every thread. `side` tells the hits on one primitive apart, which are decided independently.
+// A number in [0,1) that is a function of the ray and the hit alone: a ray gets the same decision at a cut-out in any
+// order of traversal and on every thread. `side` distinguishes the hits on one primitive, which are decided
+// independently.
 float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32_t patch, uint32_t side) {
   uint64_t hash = 0x9e3779b97f4a7c15u;
   const auto mix = [&hash](uint32_t value) {
@@ -51,7 +52,7 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   SurfacePoint point;
   EvaluatePrimitive(record, {{ray.org_x, ray.org_y, ray.org_z}, direction, kInfinity, ray.time}, hit, point);
   // To render space: positions of textures are there, and instances may be stretched.
-  // Of a boundary without cut-outs only the side counts, which is the same in every space.
+  // For a boundary without cut-outs only the side matters, which is the same in every space.
   if (at.instanceId != RTC_INVALID_GEOMETRY_ID && (record.alpha || record.thin)) {
     const InstanceRecord& instance = record.tables->instances[at.instanceId - record.tables->firstInstanceId];
     const InstancePlacement placement = instance.motion ? PlacementAt(*instance.motion, ray.time) : instance.placement;
@@ -59,16 +60,16 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
     direction = placement.toRender.Vector(direction);
   }
   const float alpha = record.alpha ? record.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
-  // Embree's normal tells the sides of a curve apart; that of a flat curve's point faces the ray.
+  // Embree's normal distinguishes the sides of a curve; the normal of a flat curve's point always faces the ray.
   const bool entering = record.As<CurveSet>() ? at.side == 0 : glm::dot(direction, point.Ng) < 0;
-  // Through the hole of a cut-out a ray stays in its medium.
+  // A ray stays in its medium where it passes the hole of a cut-out.
   const int32_t medium = alpha > 0 ? (entering ? record.insideMedium : record.outsideMedium) : kSameMedium;
   if (record.PassedAsBoundary(ray.mask)) return {0, Color(1.0f), entering, medium};
   if (!record.thin) return {alpha, Color(1.0f), entering};
   const float passes =
       record.thin->TransmittedFraction(std::abs(glm::dot(glm::normalize(direction), record.thin->NormalAt(point))));
   Passage passage{alpha * (1 - passes), Color(1.0f), entering, medium};
-  // Through the hole of the cut-out without a tint, through the surface with it.
+  // Rays through the hole of the cut-out are not tinted, those through the surface are.
   if (!record.thin->IsClear() && passage.stopped < 1) {
     const Color through = Color(1 - alpha) + record.thin->Tint(point.uv, point.position, point.Ng) * (alpha * passes);
     passage.tint = through / (1 - passage.stopped);
@@ -76,8 +77,8 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   return passage;
 }
 
-// Embree reports a curve at several of its parts, at nearly the same place. It is crossed once on entering and once on
-// leaving.
+// Embree reports a curve at several of its parts, at nearly the same place. Only one crossing each is kept on entering
+// and on leaving.
 bool IsCrossedAlready(const Crossing& crossing, const std::vector<Crossing>& crossings) {
   return std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& other) {
     return other.primitive == crossing.primitive && other.instance == crossing.instance &&
@@ -85,7 +86,7 @@ bool IsCrossedAlready(const Crossing& crossing, const std::vector<Crossing>& cro
   });
 }
 
-// Records the crossing, unless it is known already.
+// Records the crossing, unless it is recorded already.
 void AddCrossing(const Meeting& at, const RayHit& hit, const Passage& passage, const Color& transmittance,
                  TraceContext& trace) {
   const SceneTables& tables = *at.record.tables;
@@ -102,7 +103,7 @@ void AddCrossing(const Meeting& at, const RayHit& hit, const Passage& passage, c
   trace.transmittance *= transmittance;
 }
 
-// A boundary between media alone. Where its opacity is 0 there is none.
+// A boundary between media alone. Holes, where its opacity is 0, are no boundary.
 void PassBoundary(const Meeting& at, const RTCRay& ray, const RayHit& hit, TraceContext& trace) {
   if (!trace.recordsBoundaries) return;
   const Passage passage = PassageAt(at, ray, hit);

@@ -13,15 +13,15 @@
 
 namespace lampyr {
 
-// State of one query. Embree hands the address of its first member to every callback.
+// State of one query. Embree passes the address of its first member to every callback.
 struct TraceContext {
   RTCIntersectContext context;
-  // Surfaces that let the ray pass, in the order in which they are visited: of Trace, thin surfaces and boundaries,
-  // whether or not a nearer hit is found later; of Transmittance, cut-outs, too. Null: not recorded.
+  // Surfaces that let the ray pass, in the order in which they are visited: for Trace, thin surfaces and boundaries,
+  // whether or not a nearer hit is found later; for Transmittance, also cut-outs. Null: not recorded.
   std::vector<Crossing>* crossings = nullptr;
-  float nearest = kNearestHit;     // of Trace: nothing before it is met
+  float nearest = kNearestHit;     // for Trace: surfaces nearer than this are ignored
   bool recordsBoundaries = false;  // false: `crossings` lacks the boundaries between media
-  Color transmittance{1.0f};  // of Transmittance: product over the crossings so far; the query ends when it is black
+  Color transmittance{1.0f};  // for Transmittance: product over the crossings so far; the query ends when it is black
   // Thrown by a custom surface, which counts as missed: no exception may pass through Embree. Rethrown by
   // ThrowFailure after the query.
   std::exception_ptr failure;
@@ -39,8 +39,8 @@ struct Meeting {
   uint32_t side = 0;                       // 0 and 1: the hits on one primitive, such as entering and leaving a sphere
 };
 
-// True if the ray goes on behind `hit`. Intersect decides at random, in proportion to the transmittance; Transmittance
-// (`isShadow`) goes on as long as any light is left.
+// True if the ray continues behind `hit`. Intersect decides at random, in proportion to the transmittance;
+// Transmittance (`isShadow`) continues until the product is black.
 bool PassesThrough(const Meeting& at, const RTCRay& ray, const RayHit& hit, TraceContext& trace, bool isShadow);
 
 // Shortens the ray to the nearest hit that stops it, on a quadric, patch or custom surface, and records that hit.
@@ -48,7 +48,7 @@ void IntersectOwn(const Meeting& at, RTCRayHit& rayHit, TraceContext& trace);
 // True if such a surface stops the ray.
 bool OccludesOwn(const Meeting& at, const RTCRay& ray, TraceContext& trace);
 
-// Bounds of a quadric, patch or custom surface in its space. `begin`, `end`: shutter times, of a custom surface.
+// Bounds of a quadric, patch or custom surface in its space. `begin`, `end`: shutter times, for a custom surface.
 Bounds3 OwnBounds(const PrimitiveRecord& record, uint32_t patch, float begin = 0, float end = 1);
 
 }  // namespace lampyr

@@ -1,4 +1,4 @@
-// See ply.h. Format: [Turk94]. Declared counts are believed only as far as the file has bytes for them.
+// See ply.h. Format: [Turk94]. Declared counts are accepted only if the rest of the file is long enough for them.
 #include "geometry/ply.h"
 
 #include <zlib.h>
@@ -103,7 +103,7 @@ class ValueReader {
 
   size_t Remaining() const { return body_.size() - position_; }
 
-  // Least bytes of a value. In ascii one digit: the last value need not have a separator.
+  // Smallest size of a value in bytes. One digit in ascii: the last value need not have a separator.
   size_t SmallestSize(Type type) const { return format_ == Format::Ascii ? 1 : SizeOf(type); }
 
  private:
@@ -294,7 +294,7 @@ void ReadVertices(const Element& element, ValueReader& reader, PlyMesh& mesh, co
       }
       const double value = reader.Read(element.properties[k].type);
       if (!(std::abs(value) <= 1e18)) {
-        // Some exporters write such normals for faces without area; the shape needs no normal there.
+        // Some exporters write such normals for faces without area, which need none.
         if (slots[k] >= 3 && slots[k] <= 5) {
           hasNormal = false;
           continue;

@@ -76,7 +76,7 @@ std::vector<TriangleCorners> CutEars(const std::vector<Point3>& positions, std::
       }
       return true;
     };
-    // A polygon that crosses itself may have no ear. Then the next corner is cut, so that the loop ends.
+    // A polygon that crosses itself may have no ear. The next corner is cut then, so that the loop ends.
     const bool isEar = misses >= count || (Area(points[a], points[b], points[c]) > 0 && isFree());
     if (!isEar) {
       ++at;

@@ -82,8 +82,8 @@ PreparedQuadric::PreparedQuadric(const Quadric& quadric) : quadric_(quadric), no
 int PreparedQuadric::IntersectSphere(const Point3d& o, const Vector3d& d, double tMax, double roots[2]) const {
   const double r = static_cast<double>(quadric_.radius);
   const double a = glm::dot(d, d), b = -glm::dot(o, d);
-  // Most rays that meet the sphere's box miss the sphere, or are shadow rays that end in front of it. Both are rejected
-  // without a root or a division if the decision is beyond rounding.
+  // Most rays that hit the sphere's box miss the sphere, or are shadow rays that end in front of it. Both are rejected
+  // without a root or a division if the decision does not depend on rounding.
   constexpr double kBeyondRounding = 1e-12;
   const double outside = glm::dot(o, o) - r * r;
   if (b * b * (1 + kBeyondRounding) < a * outside) return 0;
@@ -91,8 +91,8 @@ int PreparedQuadric::IntersectSphere(const Point3d& o, const Vector3d& d, double
     const Point3d end = o + d * tMax;
     if (glm::dot(end, end) > r * r * (1 + kBeyondRounding) && tMax < std::numeric_limits<double>::max()) return 0;
   }
-  // r² less the squared distance of the nearest point: exact to the rounding of r², and so is `outside` to that of o².
-  // Factors (r - |o|)(r + |o|) would need roots and be no more exact, because the roots are rounded.
+  // r² minus the squared distance of the nearest point: exact to the rounding of r², as `outside` is to that of o². The
+  // factors (r - |o|)(r + |o|) would need roots and be no more exact, because the roots are rounded.
   const Vector3d nearest = o + d * (b / a);
   return StableRoots(a, b, outside, r * r - glm::dot(nearest, nearest), roots);
 }

@@ -25,12 +25,12 @@ class PreparedQuadric {
  public:
   explicit PreparedQuadric(const Quadric& quadric);
 
-  // The hits with t in (tMin, tMax], nearest first, `most` of them at most; returns how many. The ray is in render
-  // space (the target of `toRender`).
+  // Finds the hits with t in (tMin, tMax], nearest first, at most `most` of them; returns their number. The ray is in
+  // render space (the target of `toRender`).
   int Intersect(const RayDouble& ray, QuadricHit hits[2], int most = 2) const;
 
-  // Position, error, normals and, with `isParametrized`, uv and tangents, in the target space of `toRender`. The
-  // indices are left alone.
+  // Sets position, error, normals and, with `isParametrized`, uv and tangents, in the target space of `toRender`. Does
+  // not set the indices.
   void Evaluate(const Point2& coordinates, bool isParametrized, SurfacePoint& point) const;
 
   const Quadric& Shape() const { return quadric_; }
@@ -41,7 +41,7 @@ class PreparedQuadric {
   bool Accept(const Point3d& p) const;
   Point2 Encode(const Point3d& p) const;
   Point3 Decode(const Point2& coordinates) const;
-  // Sets uv and tangents at p, in object space. `v`: of a cylinder.
+  // Sets uv and tangents at p, in object space. `v`: for cylinders.
   void Parametrize(const Point3& p, float v, SurfacePoint& point) const;
 
   Quadric quadric_;
@@ -52,7 +52,7 @@ class PreparedQuadric {
 };
 
 // +1 if the outer side of the quadric is the image of the object-space cross product dpdu × dpdv, -1 if it is the other
-// side. ReverseOrientation turns it; mirroring does not.
+// side. ReverseOrientation changes it; mirroring does not.
 inline float OutsideSign(const Quadric& quadric) {
   return quadric.flipNormals != quadric.toRender.SwapsHandedness() ? -1.0f : 1.0f;
 }

@@ -1,4 +1,4 @@
-// A ray, what it hit (as small as the intersector gives it), and the full description of the point it hit.
+// A ray, its hit (as compact as the intersector returns it), and the full description of the point that was hit.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ inline constexpr uint32_t kCamera = 1;    // from the camera, or after only pass
 inline constexpr uint32_t kIndirect = 2;  // scattered by a surface, or emitted by a light
 inline constexpr uint32_t kShadow = 4;    // between a surface point and a light
 inline constexpr uint32_t kAll = 7;
-// Passes everything, and crosses all surfaces that separate media: it finds the medium at a point (FindMedium).
+// Rays that find the medium at a point (FindMedium): they hit only surfaces that separate media, and pass all of them.
 inline constexpr uint32_t kMedia = 8;
 }  // namespace visibility
 
 struct Ray {
   Point3 origin;
-  Vector3 direction;  // unit length, unless a docstring says otherwise
+  Vector3 direction;  // unit length, unless documented otherwise
   float tMax = kInfinity;
   float time = 0;  // in [0,1] over the shutter
 };
@@ -32,7 +32,7 @@ struct RayDouble {
   double tMin = 0, tMax = 0;  // open below, closed above
 };
 
-// Embree's interval is closed below: a hit at the very origin is none.
+// Embree's interval is closed below: a hit at the origin itself is excluded by this bound.
 inline constexpr float kNearestHit = 1e-25f;
 
 inline constexpr uint32_t kNoIndex = 0xffffffffu;
@@ -50,7 +50,7 @@ struct RayHit {
   float u = 0, v = 0;             // barycentric (triangles), parametric otherwise
 };
 
-// A surface that a ray went straight through: a thin surface or a boundary between media (GeometryScene::Trace).
+// A surface that a ray passed straight through: a thin surface or a boundary between media (GeometryScene::Trace).
 struct Crossing {
   double t = 0;                   // ray parameter, or along a FineLine
   uint32_t primitive = kNoIndex;  // as in RayHit
@@ -58,7 +58,7 @@ struct Crossing {
   uint32_t instance = kNoIndex;
   bool entering = false;  // from the outside, which is the side that Ng points to
   Color transmittance{1.0f};
-  int32_t medium = kSameMedium;  // that the ray is in behind the surface; kSameMedium: the one in front
+  int32_t medium = kSameMedium;  // behind the surface; kSameMedium: the same as in front
 };
 
 // Product of the crossings' transmittances.
@@ -68,7 +68,7 @@ inline Color Transmittance(std::span<const Crossing> crossings) {
   return product;
 }
 
-// Points of curves, where v is counted as the arriving ray sees it. A ribbon has a surface; a fibre's is what faces the
+// Kind of a point on a curve, where v depends on the arriving ray. A ribbon has a surface; that of a fibre faces the
 // ray, or is round.
 enum class Strand : uint8_t { None, Ribbon, Fibre };
 
@@ -84,7 +84,7 @@ struct SurfacePoint {
   uint32_t patch = 0;
   uint32_t instance = kNoIndex;
   Strand strand = Strand::None;
-  bool isThin = false;  // light that goes straight on is not the surface's to scatter (ThinSurface)
+  bool isThin = false;  // light that goes straight on is not scattered by the surface (ThinSurface)
 };
 
 }  // namespace lampyr

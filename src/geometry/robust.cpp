@@ -11,7 +11,7 @@ namespace lampyr {
 namespace {
 
 // The next representable value away from `value` in the direction of `offset`; `value` itself if the offset is 0 or the
-// value is not finite. By the bits and without a branch: the signs of coordinates are not predictable, and a call of
+// value is not finite. Bitwise and branchless: the signs of coordinates are not predictable, and a call of
 // std::nextafter would cost more than all the rest of spawning a ray.
 float RoundAway(float value, float offset) {
   constexpr uint32_t kSign = 0x80000000u, kExponent = 0x7f800000u, kSmallest = 0x00800000u;  // denormals are flushed
@@ -42,8 +42,8 @@ Ray SpawnRayTo(const SurfacePoint& from, const Point3& target, const Vector3& ta
                float time) {
   const Vector3 straight = target - from.position;
   const Point3 origin = OffsetRayOrigin(from.position, from.positionError, from.Ng, straight);
-  // The rounding of a unit direction makes the ray miss the target by up to 1.5e-7 of the distance. At a grazing angle
-  // that alone would make it end behind the target's surface.
+  // The rounding of a unit direction makes the ray miss the target by up to 1.5e-7 of the distance, enough at a grazing
+  // angle to make it end behind the target's surface.
   constexpr float kDirectionError = 0x1p-22f;
   const Vector3 endError = targetError + Vector3(kDirectionError * MaxAbsComponent(straight));
   const Point3 end = OffsetRayOrigin(target, endError, targetNg, -straight);
@@ -59,7 +59,7 @@ Ray SpawnRayTo(const SurfacePoint& from, const Point3& target, const Vector3& ta
     between = Vector3(precise / length);
     distance = static_cast<float>(length);
   }
-  // A few units in the last place: t is compared after rounding of its own.
+  // A few ulps: t is compared after rounding of its own.
   constexpr float kShorten = 1 - 6 * 0x1p-23f;
   return {origin, between, distance * kShorten, time};
 }

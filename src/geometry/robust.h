@@ -7,7 +7,7 @@
 
 namespace lampyr {
 
-// `position` moved along ±Ng to the side that `direction` leaves to, beyond the error box, then rounded away.
+// `position` moved along ±Ng to the side that `direction` points to, beyond the error box, then rounded away.
 Point3 OffsetRayOrigin(const Point3& position, const Vector3& positionError, const Normal3& Ng,
                        const Vector3& direction);
 

@@ -38,10 +38,10 @@ Point3d PrecisePoint(const PrimitiveRecord& record, const RayHit& hit) {
          v * ((1 - u) * Point3d(x[q[2]]) + u * Point3d(x[q[3]]));
 }
 
-// Barycentric coordinates resolve a plain of a million metres to a tenth of a metre only, and the ray resolves it far
+// Barycentric coordinates resolve a plain of a million metres to a tenth of a metre only; the ray resolves it far
 // better. If the resolution is coarse relative to the ray's length, the point is moved to the intersection of the ray
-// with the tangent plane. The error bound is kept: rays that start here must clear the surface as the intersection of
-// other rays sees it.
+// with the tangent plane. The error bound is kept: rays that start here must clear the surface as intersected by other
+// rays.
 void MoveOntoRay(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit, SurfacePoint& point) {
   const Point3d onSurface = PrecisePoint(record, hit), origin(ray.origin);
   const Vector3d direction(ray.direction), normal(point.Ng);

@@ -1,4 +1,4 @@
-// What can be traced: shapes and placements that are finite and near enough to the origin for Embree.
+// Checks that shapes and placements can be traced: finite, and near enough to the origin for Embree.
 #pragma once
 
 #include "geometry/geometry_scene.h"
@@ -6,11 +6,11 @@
 
 namespace lampyr {
 
-// Embree aborts the process on rays beyond this, and skips primitives.
+// Bound of coordinates: beyond it, Embree aborts the process on rays, and skips primitives.
 inline constexpr float kFarthest = 1e18f;
 
-// Throws an Error for a shape that cannot be traced: what is not finite, or farther out than kFarthest; indices and
-// attributes of vertices that do not fit to one another.
+// Throws an Error for a shape that cannot be traced: not finite, or farther out than kFarthest, or with indices or
+// vertex attributes that are inconsistent.
 void CheckShape(const Shape& shape);
 
 // Throws an Error for the placement of an instance that is not finite, or reaches farther than kFarthest.
@@ -20,7 +20,7 @@ void CheckPlacement(const Affine& toRender);
 // the transform is singular, or scales too much.
 float LargestThrough(const Affine& toObject);
 
-// Both, of all transforms of an instance. Returns the least of LargestThrough.
+// Both checks, for all transforms of an instance. Returns the least of LargestThrough.
 float CheckInstance(const GeometryInstance& instance);
 
 }  // namespace lampyr

@@ -40,7 +40,7 @@ Bounds3 BoundsOf(const Quadric& q) {
   } else {
     for (int i = 0; i < 8; ++i) bounds.Add(q.toRender.Point(local.Corner(i)));
   }
-  // Padded: the box must hold the points that intersection in double finds, not their rounded positions.
+  // Padded: the box must contain the points that intersection in double finds, not their rounded positions.
   const Point3 reach = glm::max(Abs(local.min), Abs(local.max));
   const Vector3 error = q.toRender.PointError(reach, Vector3(0.0f)) * 2.0f;
   return {bounds.min - error, bounds.max + error};

@@ -7,8 +7,8 @@ namespace lampyr {
 
 namespace {
 
-// References, here and below: a copy on the stack is stored in smaller pieces than it is loaded in, and store
-// forwarding stalls.
+// By reference, here and below: a copy on the stack is stored in smaller pieces than it is loaded in, which stalls
+// store forwarding.
 struct UvCorners {
   const Point2 &uv0, &uv1, &uv2;
 };

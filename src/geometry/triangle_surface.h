@@ -9,8 +9,8 @@ namespace lampyr {
 // Texture coordinates at barycentrics (b1, b2); without vertex coordinates the corners are (0,0), (1,0), (1,1).
 Point2 TriangleUv(const TriangleMesh& mesh, uint32_t triangle, const Point2& barycentrics);
 
-// Position at barycentrics (b1, b2) with error bound, normals, and, with `isParametrized`, uv and tangents. `towards`
-// is the fallback normal of a triangle without area. The indices are left alone.
+// Sets position with error bound, normals, and, with `isParametrized`, uv and tangents at barycentrics (b1, b2).
+// `towards` is the fallback normal of a triangle without area. Does not set the indices.
 void EvaluateTriangle(const TriangleMesh& mesh, uint32_t triangle, const Point2& barycentrics, const Vector3& towards,
                       bool isParametrized, SurfacePoint& point);
 

@@ -45,7 +45,7 @@ bool Bsdf::IsDelta() const {
 }
 
 bool Bsdf::IsWide() const {
-  // Of microfacets: α, and of a phase function |g|, beyond which a lobe is narrow.
+  // A lobe is narrow below this α of microfacets, or beyond this |g| of a phase function.
   constexpr float kLeastAlpha = 0.25f, kMostMeanCosine = 0.8f;
   if (const auto* phase = std::get_if<PhaseBsdf>(&model_)) return std::abs(phase->g) < kMostMeanCosine;
   if (const auto* metal = std::get_if<ConductorBsdf>(&model_))

@@ -28,12 +28,12 @@ class Bsdf {
   Bsdf(const Frame& shadingFrame, const Normal3& Ng, const BsdfModel& model)
       : frame_(shadingFrame), Ng_(Ng), model_(model) {}
 
-  // f and both densities; 0 for delta lobes. Of the commonest model, which is short, inline: called, it would take as
-  // long again to return the result.
+  // f and both densities; 0 for delta lobes. Inline for the most common model, which is short: returning the result
+  // from a call would double the time.
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
     const auto* diffuse = std::get_if<DiffuseBsdf>(&model_);
     if (!diffuse) return EvaluateInFrame(wo, wi, mode);
-    // It needs no tangents.
+    // The diffuse model needs no tangents.
     return diffuse->Evaluate({0, 0, glm::dot(wo, frame_.z)}, {0, 0, glm::dot(wi, frame_.z)}, mode);
   }
 
@@ -44,7 +44,7 @@ class Bsdf {
   bool IsDelta() const;
   // True if light from the other side may contribute; light selection then considers both sides.
   bool IsTransmissive() const;
-  // True if it scatters over much of the sphere, so that a density of directions learned elsewhere can be of use.
+  // True if it scatters over much of the sphere, so that a learned density of directions is useful.
   bool IsWide() const;
 
   // Cosine of the scattering integral: |w·Ns|; for a fibre, the cosine of the angle to the plane across it; 1 in a
@@ -71,9 +71,9 @@ class Bsdf {
     return hair && hair->isFibre;
   }
 
-  // False for hair: a fibre has no area within the radius that photons could be counted over, and on a surface, where
-  // hair scatters grazing light as much as any, a photon would have the weight 1 / cosθ, of unbounded variance. False
-  // in a medium: these are photons of surfaces.
+  // False for hair: a fibre has no area within the radius over which photons are counted; and on a surface, where hair
+  // scatters grazing light as much as any, a photon would have the weight 1 / cosθ, of unbounded variance. False in a
+  // medium, because these are photons of surfaces.
   bool GathersPhotons() const { return !MayHaveOwnCosines(); }
 
   const Frame& ShadingFrame() const { return frame_; }

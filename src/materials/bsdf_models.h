@@ -1,7 +1,7 @@
 // The scattering models that a Bsdf may hold: small, trivially copyable values. Each works in its local frame (z is the
 // shading normal, unit directions pointing away from the surface, none exactly in the plane z = 0) and has
 //   Evaluate(wo, wi, mode), Sample(wo, uLobe, u, mode), IsDelta(), IsTransmissive()
-// with the meaning of the same methods of Bsdf. PhaseBsdf, of a medium, takes directions in any frame, and all of them.
+// with the meaning of the same methods of Bsdf. PhaseBsdf, the model of a medium, accepts all directions, in any frame.
 #pragma once
 
 #include <type_traits>
@@ -32,8 +32,8 @@ using BsdfModel =
                  ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf, MeasuredBsdf, HairBsdf, PhaseBsdf>;
 static_assert(std::is_trivially_copyable_v<BsdfModel> && sizeof(BsdfModel) <= 96);
 
-// Those from here on may have other cosines than a surface's, and gather no photons of surfaces. They come last, so
-// that one comparison tells them from all others.
+// Models from here on may have other cosines than a surface's, and gather no photons of surfaces. They come last, so
+// that one comparison identifies them.
 inline constexpr size_t kFirstWithOwnCosines = 10;
 static_assert(std::is_same_v<std::variant_alternative_t<kFirstWithOwnCosines, BsdfModel>, HairBsdf> &&
               std::is_same_v<std::variant_alternative_t<kFirstWithOwnCosines + 1, BsdfModel>, PhaseBsdf> &&

@@ -9,9 +9,9 @@
 
 namespace lampyr {
 
-// Probability of sampling the lobe of the coat, from rough estimates of what coat and base reflect. It is at least 0.1
-// and at most 0.95 for a rough coat, whose Fresnel factor varies over the lobe: if either estimate were far too low,
-// the weight of a sample would be 1/probability.
+// Probability of sampling the lobe of the coat, from rough estimates of the reflectances of coat and base. It is at
+// least 0.1 and at most 0.95 for a rough coat, whose Fresnel factor varies over the lobe: if either estimate were far
+// too low, the weight of a sample would be 1/probability.
 inline float CoatLobeProbability(float coat, float base, bool coatIsDelta) {
   if (!(base > 0)) return 1;
   const float probability = coat / (coat + base);

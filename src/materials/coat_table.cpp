@@ -12,7 +12,7 @@ float GapTransmittance(float thickness, float cosine) {
 }
 
 // Fractions of the light from direction θ that microfacets reflect and transmit, including the gap if the ray ends
-// inside of the coat. `eta` is relative to the side the light comes from.
+// inside the coat. `eta` is relative to the side of the light.
 struct Split {
   double reflected = 0, transmitted = 0;
 };
@@ -43,8 +43,8 @@ Split ScatterAtMicrofacet(const Vector3& wo, const Vector3& m, float stretchO, c
   return split;
 }
 
-// Calls visit(m, part) for the microfacets that `w` sees, `part` of them each: midpoints of the unit square that
-// SampleVisibleNormal maps to them; by symmetry, of half of it. A smooth boundary has one.
+// Calls visit(m, part) for the microfacets that are visible from `w`, with the fraction `part` of the projected area:
+// midpoints of the unit square, mapped by SampleVisibleNormal; by symmetry, of half of it. A smooth boundary has one.
 template <class Visit>
 void ForVisibleNormals(const TrowbridgeReitz& microfacets, const Vector3& w, int caps, const Visit& visit) {
   constexpr int kAzimuths = 8;
@@ -159,18 +159,18 @@ float CoatTable::InternalReflectance(Slice slice) const {
 namespace {
 
 constexpr int kWalkNodes = 64;  // evenly spaced in sqrt(cosθ)
-constexpr int kWalkCaps = 32;   // of ForVisibleNormals
+constexpr int kWalkCaps = 32;   // midpoints in ForVisibleNormals
 using WalkNodes = std::array<float, kWalkNodes>;
 
 float NodeCosineOf(int node) {
   return std::max(Sqr(static_cast<float>(node) / (kWalkNodes - 1)), 1e-6f);
 }
 
-// Scattering from one side of a boundary to a side: of light from the cosine of a node, the weights of the cosines at
-// which it goes on.
+// Scattering from one side of a boundary to a side: for light from the cosine of each node, the cosines at which it
+// continues, with weights.
 class WalkKernel {
  public:
-  // scatter(node's direction, m, add) calls add(cosine, weight) for a microfacet that the direction sees.
+  // scatter(direction of the node, m, add) calls add(cosine, weight) for a microfacet visible from the direction.
   template <class Scatter>
   WalkKernel(float alpha, const Scatter& scatter) : alpha_(alpha) {
     const TrowbridgeReitz microfacets(alpha, alpha);
@@ -206,18 +206,18 @@ class WalkKernel {
   float alpha_;
 };
 
-// Weight of a microfacet that reflects or refracts to the cosine of `to`.
+// Weight of a microfacet that reflects or refracts into the direction `to`.
 float SeenPart(const TrowbridgeReitz& microfacets, const Vector3& from, const Vector3& to) {
   return microfacets.IsSmooth() ? 1.0f
                                 : TrowbridgeReitz::ShadowingRatio(from.z, microfacets.Stretch(from), std::abs(to.z),
                                                                   microfacets.Stretch(to));
 }
 
-// The roughness of what light meets at the coat: none where the boundary does nothing.
+// Effective roughness of the coat: none if its boundary has no effect.
 float CoatRoughnessOf(const CoatDescription& coat, float alpha) {
   return coat.eta == 1 ? 0.0f : alpha;
 }
-// Refraction into the coat and down to the base, or reflection from within.
+// Refraction into the coat and down to the base, or internal reflection.
 auto AcrossCoat(const CoatDescription& coat, float alpha, float eta, bool isReflected) {
   const float roughness = CoatRoughnessOf(coat, alpha), thickness = coat.thickness;
   return [=](const Vector3& w, const Vector3& m, const auto& add) {
@@ -235,7 +235,7 @@ auto AcrossCoat(const CoatDescription& coat, float alpha, float eta, bool isRefl
 // A boundary of the coat: into it and down to the base, and from within back to the base.
 struct CoatKernels {
   WalkKernel enter, back;
-  WalkNodes leaving;  // the part that leaves, from within
+  WalkNodes leaving;  // the fraction that leaves, from within
 
   CoatKernels(const CoatDescription& coat, float alpha)
       : enter(CoatRoughnessOf(coat, alpha), AcrossCoat(coat, alpha, coat.eta, false)),
@@ -256,7 +256,7 @@ WalkKernel BaseKernel(const CoatDescription& coat, float alpha) {
                     });
 }
 
-// The lobe of one bounce as CoatedConductorBsdf has it, without its scale: by the direction outside.
+// The lobe of one bounce as in CoatedConductorBsdf, without its scale, as a function of the direction outside.
 WalkKernel LobeKernel(const CoatDescription& coat, float coatAlpha, float baseAlpha) {
   const TrowbridgeReitz base =
       WidenedBase(TrowbridgeReitz(baseAlpha, baseAlpha), TrowbridgeReitz(coatAlpha, coatAlpha), coat.eta);
@@ -272,10 +272,10 @@ WalkKernel LobeKernel(const CoatDescription& coat, float coatAlpha, float baseAl
   });
 }
 
-// C of a lobe: C(wo) ∫ C(wi) lobe = albedo, by turns of a symmetric scaling.
+// C of a lobe: C(wo) ∫ C(wi) lobe = albedo, by iterated symmetric scaling.
 WalkNodes ScaleOf(const WalkKernel& lobe, const WalkNodes& albedo) {
   constexpr int kTurns = 10;
-  constexpr float kMost = 3;  // at grazing angles, where next to nothing is left of either
+  constexpr float kMost = 3;  // limits C at grazing angles, where both sides are nearly 0
   WalkNodes scale;
   scale.fill(1);
   for (int turn = 0; turn < kTurns; ++turn) {

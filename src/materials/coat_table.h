@@ -1,4 +1,4 @@
-// Transmittance of a dielectric coat, as tables made once per material.
+// Transmittance of a dielectric coat, tabulated once per material.
 //
 // A coat is a dielectric boundary (smooth or rough, single scattering) above a gap that absorbs exp(-thickness/|cosθ|)
 // per crossing: pbrt-v4 gives the gap that extinction also if its medium does not scatter, and so does lampyr.
@@ -55,12 +55,12 @@ class CoatTable {
   std::vector<Curves> slices_;
 };
 
-// A rough metal under a coat, as a random walk between the two has it, without the reflectance F of the metal: of light
-// that arrives from outside along θ, the part F^k a_k(θ) leaves after k bounces at the base. Includes total reflection
-// at the boundary, shadowing loss and the absorption of the gap. Tabulated are a_1 and the scale C with which the lobe
-// of one bounce, C(wo) C(wi) times the lobe of a widened base between directions that are refracted at a flat boundary,
-// has the albedo a_1 from all directions; the scale of a lobe with the albedo a_2, over C (`second`); and a_3/a_2,
-// which stands for all later ratios (`later`).
+// A rough metal under a coat: the random walk between the two, without the reflectance F of the metal. Of light that
+// arrives from outside along θ, the fraction F^k a_k(θ) leaves after k bounces at the base. It includes total
+// reflection at the boundary, shadowing loss and the absorption of the gap. Tabulated are a_1; the scale C for which
+// the lobe of one bounce, C(wo) C(wi) times the lobe of a widened base between directions that are refracted at a flat
+// boundary, has the albedo a_1 from all directions; the scale of a lobe with the albedo a_2, over C (`second`); and
+// a_3/a_2, which approximates all later ratios (`later`).
 class CoatedMetalTable {
  public:
   struct Values {
@@ -95,7 +95,7 @@ TrowbridgeReitz WidenedBase(const TrowbridgeReitz& base, const TrowbridgeReitz& 
 // The roughnesses α of the slices for a textured roughness: 0 to 1, denser towards 0.
 std::vector<float> TexturedAlphas();
 
-// 1 + x + … + x^(terms-1): the sum over the bounces at the base, as many as "maxdepth" of pbrt-v4 allows.
+// 1 + x + … + x^(terms-1): the sum over the bounces at the base, up to the number that "maxdepth" of pbrt-v4 allows.
 float TruncatedSeries(float x, int terms);
 
 }  // namespace lampyr

@@ -1,5 +1,5 @@
 // A metal under a dielectric coat, after "coatedconductor" of pbrt-v4, which evaluates random walks between the two.
-// Here:
+// This model is
 //   f(wo,wi) = f_coat(wo,wi) + C(wo) C(wi) f_base(wo',wi') S / η²
 // with wo', wi' refracted into the coat (at the mean surface), S the sum over bounces at the base, and C a scale by
 // which the directional albedo is that of the walk ([Weidlich07], with a scale in place of transmittances;
@@ -12,7 +12,7 @@
 // Error of the directional albedo against the random walk, for copper and η 1.5, as tested: 2 %, smooth coats 1 %, both
 // smooth 0.5 %. The shape of the base lobe under a rough coat is not tested.
 //
-// Deterministic and reciprocal, with exact densities. All of it counts as specular.
+// Deterministic and reciprocal, with exact densities. All lobes count as specular.
 #pragma once
 
 #include <optional>

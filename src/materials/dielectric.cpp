@@ -137,7 +137,7 @@ DielectricBsdf OfLane(const DispersiveBsdf& bsdf, int lane) {
   return {bsdf.microfacets, Lane(eta, lane)};
 }
 
-// Reflectances of the lanes at cosθ to a normal on the side that `inside` says.
+// Reflectances of the lanes at cosθ to the normal, from inside if `inside`.
 Color LaneReflectances(const Color& eta, float cosTheta, bool inside) {
   const auto reflectance = [&](float ofLane) { return FresnelDielectric(cosTheta, inside ? 1 / ofLane : ofLane); };
   return {reflectance(eta.r), reflectance(eta.g), reflectance(eta.b)};

@@ -7,7 +7,7 @@
 
 namespace lampyr {
 
-// Outside (z > 0) has index 1, inside η. With η = 1 everything is transmitted without deflection: a delta, whatever the
+// Outside (z > 0) has index 1, inside η. With η = 1 all light is transmitted without deflection: a delta, whatever the
 // roughness.
 struct DielectricBsdf {
   TrowbridgeReitz microfacets;
@@ -23,8 +23,8 @@ struct DielectricBsdf {
 // alike, and refracts each in another direction, of which a path follows one. A rough one scatters all lanes, and
 // samples by the mean of their densities ([Wilkie14]).
 //
-// The probability of a smooth reflection is the mean over the lanes, whichever is followed: it depends on the direction
-// alone, so that both walks know it.
+// The probability of a smooth reflection is the mean over the lanes, whichever lane is followed: it depends on the
+// direction alone, so that camera and light subpaths agree on it.
 struct DispersiveBsdf {
   TrowbridgeReitz microfacets;
   Color eta{1.0f};  // by lane, none 1 for a range of wavelengths
@@ -39,7 +39,7 @@ struct DispersiveBsdf {
 // Reflectance of a thin surface with parallel sides, summed over all orders of interreflection.
 float ThinReflectance(float cosTheta, float eta);
 
-// A thin surface. Transmitted light is not deflected, and tinted by `transmittance`. isReflectionOnly: ray tracing
+// A thin surface. Transmitted light is not deflected, and is tinted by `transmittance`. isReflectionOnly: ray tracing
 // already accounts for the transmission (SurfacePoint::isThin), and only the reflection remains.
 struct ThinDielectricBsdf {
   float eta = 1;

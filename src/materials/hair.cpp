@@ -34,7 +34,7 @@ void Attenuate(float F, float T, float attenuation[HairBsdf::kLobes]) {
 }
 
 // Samples the logistic distribution of scale s, trimmed to [-π,π]. The ends of the range of u map to the parts of the
-// tails that a float can represent instead of to their ends, where a narrow lobe has no density.
+// tails that float can represent, and not to the ends of the interval, where a narrow lobe has no density.
 float SampleTrimmedLogistic(float u, float s) {
   const float y = ClampTo(std::tanh(0.5f * kPi / s) * (2 * u - 1), -kOneMinusEpsilon, kOneMinusEpsilon);
   return ClampTo(s * (std::log1p(y) - std::log1p(-y)), -kPi, kPi);
@@ -211,7 +211,7 @@ float ScaledBesselI0(float x) {
 Color HairAbsorption(const Color& reflectance, float betaN) {
   const float b = ClampTo(betaN, HairBsdf::kLeastBeta, 1);
   const float slope = 5.969f + b * (-0.215f + b * (2.532f + b * (-10.73f + b * (5.574f + b * 0.245f))));
-  // The absorption of a black block would be unbounded.
+  // Clamped: the absorption of a black block would be infinite.
   const auto absorption = [slope](float c) { return Sqr(std::log(ClampTo(c, 1e-30f, 1)) / slope); };
   return {absorption(reflectance.r), absorption(reflectance.g), absorption(reflectance.b)};
 }

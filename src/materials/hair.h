@@ -37,7 +37,7 @@ struct HairBsdf {
   // C(w), positive.
   float ScatteringCosine(const Vector3& w) const;
 
-  // Offset h in [-1,1]. Where it is positive, the normal of the fibre's wall leans from z towards y.
+  // Offset h in [-1,1]. If it is positive, the normal of the fibre's wall leans from z towards y.
   float offset = 0;
   // True if `offset` is seen by the arriving path, of either mode; false if it is a property of the point, as seen by
   // camera paths.

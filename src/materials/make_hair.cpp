@@ -11,7 +11,7 @@ namespace {
 struct Pigment {
   std::optional<ColorParameter> sigmaA, reflectance;
   FloatParameter eumelanin = 1.3f, pheomelanin = 0.0f;
-  std::shared_ptr<const Wavelengths> wavelengths;  // at which melanins are wanted; null: in Rec. 709
+  std::shared_ptr<const Wavelengths> wavelengths;  // at which melanins are evaluated; null: in Rec. 709
 
   Color Evaluate(const TextureContext& where, float betaN) const {
     if (sigmaA) return sigmaA->Evaluate(where);
@@ -50,8 +50,8 @@ struct HairParameters {
   }
 };
 
-// Offset h of a path from the centre of the fibre: v runs across the fibre, mapped to [-1,1]. On a curve it runs as the
-// arriving ray sees it, and the normal of the fibre's wall leans towards growing v.
+// Offset h of a path from the centre of the fibre: v runs across the fibre, mapped to [-1,1]. On a curve the direction
+// of v is as seen along the arriving ray, and the normal of the fibre's wall leans towards increasing v.
 float OffsetAt(const SurfacePoint& point, const Vector3& wo) {
   const float v = std::min(std::max(-1.0f, 2 * point.uv.y - 1), 1.0f);
   if (point.strand == Strand::None) return v;

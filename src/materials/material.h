@@ -29,11 +29,11 @@ class Material {
   virtual bool MayTransmit() const { return false; }
   virtual bool HasDelta() const { return false; }
   // True if it scatters by deltas only, at every point and in every draw: no photons can be gathered there. A mix is
-  // drawn anew for each path, so that a draw that is a delta says nothing about the draws of other paths.
+  // drawn anew for each path, so that a delta in one draw implies nothing for the draws of other paths.
   virtual bool IsAlwaysDelta() const { return false; }
-  // True if a map of normals or heights turns the shading frame.
+  // True if a normal map or displacement changes the shading frame.
   virtual bool HasMappedNormal() const { return false; }
-  // False if GetBsdf never looks at uv and tangents of the point.
+  // False if GetBsdf never uses uv and tangents of the point.
   virtual bool NeedsParametrization() const { return true; }
   // True if curves of this material may be fibres (Bsdf::IsFibre).
   virtual bool IsFibrous() const { return false; }
@@ -42,12 +42,12 @@ class Material {
   // The transmission of a thin surface, which ray tracing has to account for if SurfacePoint::isThin is set. Null: not
   // a thin surface.
   virtual const ThinSurface* Thin() const { return nullptr; }
-  // This material with rougher microfacets (TrowbridgeReitz::Roughened), or null if it has none. A material that is
-  // made of others asks `roughened` for theirs.
+  // This material with rougher microfacets (TrowbridgeReitz::Roughened), or null if it has none. A material made of
+  // others gets theirs from `roughened`.
   using Roughener = std::function<std::shared_ptr<const Material>(const std::shared_ptr<const Material>&)>;
   virtual std::shared_ptr<const Material> Roughened(const Roughener& /*roughened*/) const { return nullptr; }
-  // This material at the wavelengths of a pass; null if it is the same at all. A material that is made of others asks
-  // `tuned` for theirs.
+  // This material at the wavelengths of a pass; null if it is the same at all wavelengths. A material made of others
+  // gets theirs from `tuned`.
   using Tuner = std::function<std::shared_ptr<const Material>(const std::shared_ptr<const Material>&)>;
   virtual std::shared_ptr<const Material> AtWavelengths(const std::shared_ptr<const Wavelengths>& /*wavelengths*/,
                                                         const Tuner& /*tuned*/) const {
@@ -63,7 +63,7 @@ class Material {
 std::vector<std::shared_ptr<const Material>> RoughenedMaterials(
     const std::vector<std::shared_ptr<const Material>>& materials);
 
-// The materials at the wavelengths of a pass, in the same order; null stays so.
+// The materials at the wavelengths of a pass, in the same order; null stays null.
 std::vector<std::shared_ptr<const Material>> MaterialsAt(const std::shared_ptr<const Wavelengths>& wavelengths,
                                                          const std::vector<std::shared_ptr<const Material>>& materials);
 

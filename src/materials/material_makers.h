@@ -48,7 +48,7 @@ class RoughnessParameters {
   bool IsConstant() const { return u_.IsConstant() && v_.IsConstant(); }
   bool IsAnisotropic() const { return isAnisotropic_; }
   bool MayBeSmooth() const { return !isRoughened_ && (!IsConstant() || Evaluate({}).IsSmooth()); }
-  // From now on Evaluate gives rougher microfacets (TrowbridgeReitz::Roughened).
+  // Makes Evaluate return rougher microfacets (TrowbridgeReitz::Roughened) from now on.
   void Roughen() { isRoughened_ = true; }
   // α values for a table: the constant one, or TexturedAlphas().
   std::vector<float> TableAlphas() const;
@@ -78,7 +78,7 @@ class MetalParameters {
 float GetEta(const MaterialInput& input, const std::string& name, float defaultValue);
 
 // The index as a function of the wavelength, by the spectrum `name`, or by "cauchy" (a, b, c in powers of µm²) or
-// "sellmeier" (b1, b2, b3, and c1, c2, c3 in µm²); null: it is the same at all wavelengths.
+// "sellmeier" (b1, b2, b3, and c1, c2, c3 in µm²); null: constant.
 std::shared_ptr<const SpectralCurve> FindEtaCurve(const MaterialInput& input, const std::string& name);
 
 // Clamps a reflectance or transmittance to [0,1]; NaN counts as 0.

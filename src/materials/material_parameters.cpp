@@ -122,7 +122,7 @@ bool MetalParameters::IsConstant() const {
 
 namespace {
 
-// The formula of the index that is given in place of a spectrum; null: none.
+// The formula that replaces the spectrum of the index; null: none.
 std::shared_ptr<const SpectralCurve> FindEtaFormula(const ParameterList& parameters) {
   const std::vector<double> cauchy = parameters.GetFloats("cauchy"), sellmeier = parameters.GetFloats("sellmeier");
   if (cauchy.empty() && sellmeier.empty()) return nullptr;
@@ -153,7 +153,7 @@ std::shared_ptr<const SpectralCurve> FindEtaFormula(const ParameterList& paramet
   return curve;
 }
 
-// The sodium line, at which indices are quoted, nm.
+// The d line of helium, at which indices of refraction are quoted (n_d), nm.
 constexpr double kQuotedWavelength = 587.56;
 
 }  // namespace

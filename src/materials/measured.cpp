@@ -44,7 +44,7 @@ class Incidence {
  public:
   Incidence(const MeasuredData& data, const Vector3& direction) : data_(data) {
     Vector3d w(direction);
-    // Mirrored into the part of the azimuths that was measured.
+    // Mirrored into the measured part of the azimuths.
     if (data.symmetry >= 2 && direction.y * data.partY < 0) flipY_ = -1;
     if (data.symmetry == 2) flipX_ = flipY_;
     if (data.symmetry == 4 && direction.x * data.partX < 0) flipX_ = -1;
@@ -101,7 +101,7 @@ double SolidAnglePerSquare(double u, double cosine) {
 Color Reflected(const MeasuredData& data, const Incidence& incidence, const Point2d& place, const Point2d& warped) {
   const double area = incidence.ProjectedArea();
   if (!(area > 0)) return Color(0.0f);
-  constexpr double kLargest = 1e20;  // of any measurement, by far: products stay in the range of float
+  constexpr double kLargest = 1e20;  // Far above any measurement: keeps products in the range of float.
   const double scale = std::min(static_cast<double>(data.normals.Evaluate(place)) / (4 * area), kLargest);
   return data.reflectance.Evaluate(incidence.Blend(), warped) * static_cast<float>(scale);
 }
@@ -157,7 +157,7 @@ BsdfSample MeasuredBsdf::Sample(const Vector3& wo, float, const Point2& u, Trans
   if (!(cosine > 0) || !(reflected.z > 0)) return sample;
   const Vector3 i(reflected / glm::length(reflected));
   if (!(i.z > 0)) return sample;
-  // The densities are those of the direction as it is rounded.
+  // The densities of the direction as rounded.
   const BsdfEvaluation value = Evaluate(o, i, mode);
   if (!(value.pdfForward.value > 0)) return sample;
   sample.wi = wo.z < 0 ? -i : i;

@@ -34,7 +34,7 @@ class Wavelengths;
 
 struct MeasuredBsdf {
   const MeasuredData* data = nullptr;
-  const Wavelengths* wavelengths = nullptr;  // at which values are wanted; null: in Rec. 709
+  const Wavelengths* wavelengths = nullptr;  // at which values are evaluated; null: in Rec. 709
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
   BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;

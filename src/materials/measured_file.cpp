@@ -84,7 +84,7 @@ class TensorReader {
       throw Error("its field \"" + name + "\" goes beyond the end of the file");
     tensor.values.resize(size);
     if (size > 0) std::memcpy(tensor.values.data(), bytes_.data() + offset, size * sizeof(float));
-    // No measurement comes near the limit, and products of values within it stay in the range of float.
+    // Far above any measurement; products of values within it stay in the range of float.
     constexpr float kLargest = 1e15f;
     for (const float value : tensor.values) {
       if (!(std::abs(value) <= kLargest))

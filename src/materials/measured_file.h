@@ -10,8 +10,8 @@
 
 namespace lampyr {
 
-// Throws an Error at `where` that names the file if it cannot be read, is no such file, or holds tables that do not fit
-// together or whose values are negative or not finite.
+// Throws an Error at `where` that names the file if it cannot be read, has another format, or has tables that are
+// inconsistent, negative or not finite.
 MeasuredData ReadMeasured(const std::filesystem::path& file, const FileLocation& where);
 // Parses the bytes of a file. Throws the same Errors, without a location.
 MeasuredData ParseMeasured(std::span<const std::byte> bytes);

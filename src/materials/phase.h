@@ -2,8 +2,8 @@
 //
 // With h = |g| and t = 1 - cosθ, θ the angle from the lobe's axis (forward for g > 0, backward for g < 0),
 //   p = (1 - h²) / (4π D^(3/2)),  D = (1 - h)² + 2 h t,
-// and the sample t of u has √D = (1 - h²) / q, q = 1 - h + 2 h (1 - u). No form of these divides by h, and none takes
-// the difference of nearly equal numbers.
+// and the sample t of u has √D = (1 - h²) / q, q = 1 - h + 2 h (1 - u). None of these forms divides by h or subtracts
+// nearly equal numbers.
 #pragma once
 
 #include "materials/scattering.h"

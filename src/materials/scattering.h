@@ -16,8 +16,9 @@ struct BsdfEvaluation {
   Color Sum() const { return diffuse + specular; }
 };
 
-// False if the path is absorbed. Functions that make one return the same variable everywhere: it is then made in the
-// caller's place, and a copy of what was just written field by field stalls on store forwarding.
+// False if the path is absorbed. Functions that return one use the same variable in every return statement, so that it
+// is constructed in the caller's storage (NRVO): copying what was just written field by field stalls on store
+// forwarding.
 struct BsdfSample {
   Vector3 wi{0.0f};
   // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels.
@@ -25,8 +26,8 @@ struct BsdfSample {
   PdfSolidAngle pdfForward, pdfReverse;  // for a delta: discrete probabilities of the lobe
   bool isDelta = false;
   bool isTransmission = false;
-  // The direction is that of the light of one lane of the Color, to which it is refracted. The others, which are
-  // refracted elsewhere, have weight 0. Set as well where the light of the lane is not refracted, and the sample false.
+  // The direction is that to which the light of one lane of the Color is refracted. The others, which are refracted
+  // elsewhere, have weight 0. Also set if the light of the lane is not refracted, in which case the sample is false.
   bool isDispersion = false;
   float eta = 1;  // η on wi's side over η on wo's side for transmission; 1 otherwise
 

@@ -63,7 +63,7 @@ Frame ShadingNormal::FromNormalMap(const SurfacePoint& point) const {
 }
 
 Frame ShadingNormal::FromDisplacement(const SurfacePoint& point) const {
-  // Tangents of the smooth surface that Ns describes.
+  // Tangents of the smooth surface whose normal is Ns.
   const Vector3 dpdu = point.dpdu - point.Ns * glm::dot(point.Ns, point.dpdu);
   const Vector3 dpdv = point.dpdv - point.Ns * glm::dot(point.Ns, point.dpdv);
   const float here = displacement_->Evaluate({point.uv, point.position, point.Ng});

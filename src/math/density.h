@@ -58,8 +58,9 @@ inline PdfArea ToArea(PdfSolidAngle pdf, float solidAngleToArea) {
   return PdfArea(pdf.value * solidAngleToArea);
 }
 
-// Densities along a path, in double: they are multiplied, and those of a light of 1e-6 m are 1e12. A delta distribution
-// has no density; its `value` is the coefficient of the delta, in the measure in which its path is compared.
+// Densities along a path, in double: they are multiplied, and the densities of a light of 1e-6 m are 1e12. A delta
+// distribution has no density; its `value` is the coefficient of the delta, in the measure in which its path is
+// compared.
 template <class Measure>
 struct Density {
   double value = 0;

@@ -93,9 +93,9 @@ inline constexpr int kMaxMotionKeys = 129;
 
 // Keys for a chain. Null if it does not move while the shutter is open; its placement is then
 // chain.At(times.FractionAt(0)). Points of `moved` (local space; a box of ±1 if empty) deviate from the motion of the
-// chain by less than 2e-5 of the size of the box, or by what kMaxMotionKeys keys allow (4e-5 to 8e-5 for rotations of
-// 130° to 180°). Throws an Error at `where` for a motion that leaves the range of floats or becomes singular on its
-// way.
+// chain by less than 2e-5 of the size of the box, or by the error that kMaxMotionKeys keys allow (4e-5 to 8e-5 for
+// rotations of 130° to 180°). Throws an Error at `where` for a motion that leaves the range of floats or becomes
+// singular on its way.
 std::shared_ptr<const Motion> MakeMotion(const MotionChain& chain, const MotionTimes& times, const Bounds3& moved,
                                          const char* what, const FileLocation& where);
 

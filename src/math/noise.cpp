@@ -12,7 +12,7 @@ namespace {
 constexpr float kLargestCoordinate = 0x1p30f;
 constexpr float kOctaveScale = 1.99f;  // just below 2, so that the lattices of octaves do not coincide
 
-// The permutation that [Perlin02] publishes, which other renderers use, too: patterns lie where theirs do.
+// The permutation published in [Perlin02], which other renderers use, too: patterns have the same positions as theirs.
 constexpr std::array<uint8_t, 256> kPermutation = {
     151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,  69,  142,
     8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,  94,  252, 219, 203,

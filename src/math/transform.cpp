@@ -34,7 +34,7 @@ Affine Affine::Inverse() const {
 }
 
 Transform::Transform(const glm::dmat4& m) : m_(m), inverse_(glm::inverse(m)) {
-  // The inverse of an affine map is one, too: without what rounding leaves in its last row.
+  // The inverse of an affine map is affine: rounding errors in its last row are removed.
   if (!IsAffine() || !AllFinite(inverse_)) return;
   for (int column = 0; column < 4; ++column) inverse_[column][3] = column == 3 ? 1.0 : 0.0;
 }

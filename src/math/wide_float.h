@@ -6,9 +6,9 @@
 
 namespace lampyr {
 
-// A value that is 0, positive or infinite, with the exponent of a double and 21 bits of its mantissa: off by 2.4e-7 of
-// itself at most. For densities and volumes that are stored in millions: where lengths are 1e13, volumes leave the
-// range of float.
+// A value that is 0, positive or infinite, with the exponent of a double and 21 bits of its mantissa: the relative
+// error is at most 2.4e-7. For densities and volumes that are stored in millions: for lengths of 1e13, volumes exceed
+// the range of float.
 class WideFloat {
  public:
   WideFloat() = default;

@@ -10,7 +10,7 @@ namespace lampyr {
 inline constexpr float kColdestGlow = 100;  // K; a colder gas is dark, as in pbrt-v4
 inline constexpr float kHottestGas = 1e6f;  // K
 
-// NormalizedBlackbody, to 0.1 % from 700 K on, interpolated in the logarithms of temperature and luminance.
+// NormalizedBlackbody, accurate to 0.1 % from 700 K on, interpolated in the logarithms of temperature and luminance.
 class BlackbodyTable {
  public:
   // Made at the first call.
@@ -29,7 +29,7 @@ class BlackbodyTable {
   std::vector<Entry> entries_;  // evenly in log T from kColdestGlow to kHottestGas
 };
 
-// How a medium's grid of temperatures becomes kelvin: (value - offset) · scale.
+// Conversion of the values of a medium's temperature grid to kelvin: (value - offset) · scale.
 struct TemperatureScale {
   float offset = 0, scale = 1;
 

@@ -1,4 +1,4 @@
-// A medium that fills a box of a space of its own, and is empty outside. Internal to media/.
+// A medium in a box of its own space, empty outside. Internal to media/.
 #pragma once
 
 #include <string>

@@ -17,10 +17,10 @@ struct CloudParameters {
 };
 
 constexpr int kOctaves = 5;
-// Above |Noise|, which reaches 1.037 between gradients that all point to the middle.
+// Upper bound of |Noise|, which reaches 1.037 between gradients that all point to the middle.
 constexpr float kNoiseBound = 1.05f;
 
-// Slope of the noise by differences, as displacement.
+// Slope of the noise by finite differences; displaces points.
 Vector3 NoiseSlope(const Point3& p) {
   constexpr float kStep = 0.01f;
   const float here = Noise(p);
@@ -40,7 +40,7 @@ class CloudMedium : public BoxMedium {
   CloudMedium(const std::string& name, const CloudParameters& cloud, const Affine& toMedium, MajorantGrid majorants)
       : BoxMedium(name, cloud.scattering.asymmetry, false, toMedium, std::move(majorants)), cloud_(cloud) {}
 
-  // Some 30 for each evaluation of noise.
+  // About 30 ns per evaluation of noise.
   double LookupNanoseconds() const override { return 30 * (kOctaves + (cloud_.wispiness > 0 ? 8 : 0)); }
 
  protected:
@@ -60,8 +60,8 @@ class CloudMedium : public BoxMedium {
   CloudParameters cloud_;
 };
 
-// Layers of height, over which the density has bounds whatever the noise. Above y = 1, where no cloud is meant to be,
-// the formula's factor (1 - y) is negative, and negative noise makes a density.
+// Layers of height, in which the density is bounded for any noise. Above y = 1, where the cloud is meant to have ended,
+// the factor (1 - y) of the formula is negative, and negative noise gives a positive density.
 MajorantGrid MakeMajorants(const CloudParameters& cloud, const Bounds3& box, const Affine& toMedium) {
   constexpr int kLayers = 32;
   constexpr float kMostNoise = kNoiseBound * (1 - 1.0f / (1 << kOctaves));  // Σ 2^-i, i from 1
@@ -77,7 +77,7 @@ MajorantGrid MakeMajorants(const CloudParameters& cloud, const Bounds3& box, con
   return {box, 1, kLayers, 1, std::move(majorants), toMedium};
 }
 
-// Limits within which no step of the formula leaves the range of floats.
+// Limits within which every step of the formula is in the range of floats.
 constexpr float kLargestCoordinate = 1e9f;
 
 float GetModerate(const ParameterList& parameters, const std::string& name, double defaultValue) {

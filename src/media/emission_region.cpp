@@ -13,7 +13,7 @@ namespace {
 
 // Points of a grid's cell at which its emission is looked up.
 constexpr int kProbes = 8;
-// Least weight of a grid's cell, of the mean emission of all cells: times its majorant over the mean one.
+// Least weight of a grid's cell relative to the mean emission of all cells: times its majorant over the mean one.
 constexpr double kLeastWeight = 0.05;
 
 constexpr int kCellsOfPlace = 16;  // per axis
@@ -87,7 +87,7 @@ double EmissionRegion::Density(const Point3& position) const {
 }
 
 EmissionRegion RegionOfGrid(const Medium& medium, double& emission) {
-  // All media with majorants are in a box.
+  // All media with majorants are box media.
   const auto& boxed = dynamic_cast<const BoxMedium&>(medium);
   const MajorantGrid& grid = *medium.Majorants();
   const Affine toRender = boxed.ToSpace().Inverse();
@@ -109,7 +109,7 @@ EmissionRegion RegionOfGrid(const Medium& medium, double& emission) {
     weights[i] = static_cast<float>(mean);
     sum += mean;
   }
-  // Where all probes are dark, the medium may yet emit.
+  // A medium whose probes are all dark may still emit.
   const double perMajorant = sum > 0 ? kLeastWeight * sum / majorantSum : 1;
   for (size_t i = 0; i < majorants.size(); ++i)
     weights[i] += static_cast<float>(perMajorant * static_cast<double>(majorants[i]));
@@ -148,7 +148,7 @@ void ScanBox(const GeometryScene& geometry, const Bounds3& within, const Bounds3
   }
 }
 
-// Adds the parts of the cells along an axis that lie in [from, to], both in cells.
+// Adds the cells' parts of the interval [from, to] along an axis, in units of cells.
 void AddToCells(std::array<int, 3> cell, int axis, double from, double to, FoundPlace& place) {
   const double most = place.resolution[static_cast<size_t>(axis)];
   from = std::max(from, 0.0);
@@ -160,7 +160,8 @@ void AddToCells(std::array<int, 3> cell, int axis, double from, double to, Found
   }
 }
 
-// The box of the surfaces that bound a medium, not flat, within the scene's; of the medium around the scene, that.
+// The box of the surfaces that bound a medium, not flat, within the scene's box; for the medium around the scene, the
+// scene's box.
 Bounds3 BoxToScan(const Bounds3& within, const MediumSurfaces& surfaces, bool isExterior) {
   if (isExterior || surfaces.box.IsEmpty()) return within;
   constexpr float kThickness = 1e-3f;
@@ -211,7 +212,7 @@ FoundPlace FindPlaceOf(const GeometryScene& geometry, const Bounds3& within, int
   for (float& weight : place.weights) {
     const float part = weight / (3.0f * kRaysToWeigh * kRaysToWeigh * static_cast<float>(times.size()));
     full += static_cast<double>(part);
-    // Cells that no ray finds may hold a part of the medium.
+    // Cells that no ray finds may contain a part of the medium.
     weight = std::max(std::sqrt(part), kLeastWeightOfPlace);
   }
   place.volume = full * cellSide.x * cellSide.y * cellSide.z;

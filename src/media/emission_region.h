@@ -1,5 +1,5 @@
-// A box of cells in which points are sampled by the weights of the cells, and where media are found. Internal to
-// MediumEmission.
+// A box of cells from which points are sampled by the weights of the cells, and the search for the places of media.
+// Internal to MediumEmission.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace lampyr {
 
 class EmissionRegion {
  public:
-  // `box`: of the cells, in a space that `toRender` leads from. `weights`: x fastest; not all 0.
+  // `box`: of the cells, in the space that `toRender` maps to render space. `weights`: x fastest; not all 0.
   EmissionRegion(const Bounds3& box, const std::array<int, 3>& resolution, std::span<const float> weights,
                  const Affine& toRender);
 
@@ -38,8 +38,8 @@ class EmissionRegion {
   double cellVolume_;  // in render space
 };
 
-// The region of the cells of a grid's majorants, weighted by what they emit, and the emitted power over 4π: the mean of
-// the channels of ∫ σ_a L_e dV, estimated.
+// The region of the cells of a grid's majorants, weighted by their emission, and an estimate of the emitted power over
+// 4π: the mean of the channels of ∫ σ_a L_e dV.
 EmissionRegion RegionOfGrid(const Medium& medium, double& emission);
 
 // Calls visit(tMin, tMax) for the parts of a ray in `medium`; the ray starts in `start`. Opaque surfaces do not stop
@@ -66,7 +66,7 @@ struct FoundPlace {
   Bounds3 box;        // with a margin of the distance between rays; empty: nowhere
   double volume = 0;  // estimate
   std::array<int, 3> resolution{};
-  std::vector<float> weights;  // of cells of the box: √ of the part that is in the medium, and not 0
+  std::vector<float> weights;  // per cell of the box: √ of the fraction that is in the medium; above 0
 };
 FoundPlace FindPlaceOf(const GeometryScene& geometry, const Bounds3& within, int32_t exterior, int32_t medium);
 

@@ -17,7 +17,7 @@ GridResolution GetGridResolution(const ParameterList& parameters) {
 
 namespace {
 
-// nx · ny · nz may be beyond all integers.
+// In double, because nx · ny · nz may exceed the range of integers.
 double VoxelCount(const GridResolution& resolution) {
   return static_cast<double>(resolution[0]) * resolution[1] * resolution[2];
 }

@@ -10,21 +10,21 @@ namespace lampyr {
 // "nx", "ny" and "nz", each at least 1, default 1.
 GridResolution GetGridResolution(const ParameterList& parameters);
 
-// A value, or colour, for each voxel, x fastest; empty if there is no such parameter. Throws located Errors for another
+// A value, or colour, for each voxel, x fastest; empty if the parameter is absent. Throws located Errors for another
 // number of values, and for a negative one if `isNonNegative`.
 std::vector<float> GetVoxels(const MediumInput& input, const std::string& name, const GridResolution& resolution,
                              bool isNonNegative);
 std::vector<Color> GetColorVoxels(const MediumInput& input, const std::string& name, const GridResolution& resolution,
                                   SpectrumRole role);
 
-// From render space to the space of which the grid's box (GetBox) is the unit cube.
+// From render space to the space in which the grid's box (GetBox) is the unit cube.
 Affine GetToGrid(const MediumInput& input);
 
-// Of a list that is not empty.
+// The largest value of a list that is not empty.
 float Largest(const std::vector<float>& values);
 Color LargestByChannel(const std::vector<Color>& values);
 
-// A bound of the blackbody colours up to a temperature; black if those are dark.
+// An upper bound of the blackbody colours up to a temperature; black if those are dark.
 Color BrightestBlackbody(float kelvin);
 
 // Majorants over the unit cube, bounds of `factor` times the interpolated values.

@@ -59,7 +59,7 @@ class MajorantWalk {
   float Majorant() const;
   // The axis whose border is next.
   int NextAxis() const;
-  // Goes on to the next cell, or is done; the parameter up to which the last cell went.
+  // Moves to the next cell, or ends the walk; returns the parameter at which the last cell ends.
   double Step();
 
   const MajorantGrid* grid_;

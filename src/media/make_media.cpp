@@ -22,7 +22,7 @@ constexpr MediumType kTypes[] = {{"homogeneous", MakeHomogeneous},
                                  {"cloud", MakeCloud},
                                  {"nanovdb", MakeNanoVdb}};
 
-// Paths through a grid collide with its majorant, step by step: without a bound they would not end.
+// Paths through a grid have tentative collisions by its majorant, step by step: their number has to be bounded.
 void CheckDepth(const Medium& medium, const FileLocation& where) {
   constexpr double kMost = 1e8;
   const MajorantGrid* grid = medium.Majorants();

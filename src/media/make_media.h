@@ -11,8 +11,9 @@
 
 namespace lampyr {
 
-// One medium for each of `description.media`, in their order. Grids are counted against `memory` before they are taken.
-// Throws located Errors for unknown types and parameters, values out of range, and files that are absent or damaged.
+// One medium for each of `description.media`, in their order. Grids are counted against `memory` before they are
+// allocated. Throws located Errors for unknown types and parameters, values out of range, and files that are absent or
+// damaged.
 std::vector<std::shared_ptr<const Medium>> MakeMedia(const SceneDescription& description,
                                                      const Transform& renderFromWorld, MemoryBudget& memory,
                                                      Diagnostics& diagnostics);

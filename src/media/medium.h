@@ -1,5 +1,5 @@
-// Participating media: what a point of a medium scatters, absorbs and emits, and bounds along rays by which distances
-// are sampled. Lengths are in scene units, and coefficients per scene unit, in render space.
+// Participating media: scattering, absorption and emission at a point, and bounds along rays for distance sampling.
+// Lengths are in scene units, coefficients per scene unit, in render space.
 #pragma once
 
 #include <cstddef>
@@ -27,12 +27,12 @@ class Medium {
  public:
   virtual ~Medium() = default;
 
-  // Coefficients at a point of render space; of a grid, 0 outside of its box.
+  // Coefficients at a point of render space; for a grid, 0 outside of its box.
   virtual MediumCoefficients At(const Point3& position) const = 0;
   // Upper bounds of the extinction, the largest of its channels; null: the medium is homogeneous, and At is the same
   // everywhere.
   virtual const MajorantGrid* Majorants() const { return nullptr; }
-  // This medium at the wavelengths of a pass. `self`: this one.
+  // This medium at the wavelengths of a pass. `self`: a pointer to this medium.
   virtual std::shared_ptr<const Medium> AtWavelengths(const std::shared_ptr<const Medium>& self,
                                                       const std::shared_ptr<const Wavelengths>& wavelengths) const;
   // Time of At on a typical machine, for estimates of the cost of integrators.
@@ -45,7 +45,7 @@ class Medium {
   // after scattering.
   float Asymmetry() const { return asymmetry_; }
   bool IsEmissive() const { return isEmissive_; }
-  // True if paths may scatter in it. Others attenuate light only.
+  // True if paths may scatter in the medium; otherwise it only attenuates light.
   bool Scatters() const { return scatters_; }
   const std::string& Name() const { return name_; }
 

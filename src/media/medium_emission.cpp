@@ -8,10 +8,10 @@ namespace lampyr {
 
 namespace {
 
-// Probability with which a point of a medium without a box of its own is sampled evenly within the scene's sphere:
-// rays that find the medium may miss a part of it.
+// Probability with which a point of a medium without a box of its own is sampled uniformly within the scene's sphere:
+// the rays that find the medium may miss a part of it.
 constexpr double kEverywhere = 1.0 / 16;
-// The same probability for the medium around the camera where it has no bounds but opaque surfaces.
+// The same probability for the medium around the camera if only opaque surfaces bound it.
 constexpr double kUnbounded = 1.0 / 2;
 
 constexpr double kSphere = 4 * static_cast<double>(kPi);  // sr
@@ -63,7 +63,7 @@ MediumEmission::Source MediumEmission::BoundedSource(int32_t index, double& volu
   Source source{index, {EmissionRegion(within, {1, 1, 1}, all, Affine())}, {1.0}};
   const FoundPlace place = FindPlaceOf(geometry_, within, exterior_, index);
   if (place.box.IsEmpty()) {
-    // Smaller than rays find.
+    // The medium is smaller than the distance between rays.
     const double side = static_cast<double>(within_.radius) / 64;
     volume = side * side * side;
     return source;
@@ -82,7 +82,7 @@ bool MediumEmission::IsThere(int32_t medium, const Point3& position, float time)
 }
 
 std::optional<EmissionPoint> MediumEmission::Sample(double uSelect, const Vector3& u, float time) const {
-  // In double, because the random number goes on to choose among many cells.
+  // In double, because the rest of the random number selects among many cells.
   double rest = uSelect * power_;
   size_t index = 0;
   while (index + 1 < sources_.size() && rest >= sources_[index].power) rest -= sources_[index++].power;

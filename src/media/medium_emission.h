@@ -21,24 +21,24 @@ struct EmissionPoint {
   double density = 0;  // of the point, per volume (scene units); that of choosing the medium is a factor
 };
 
-// The power that a medium emits, W: the mean of the channels. Of a homogeneous one an upper bound, as if it filled the
-// box of its surfaces, or the scene's.
+// The power that a medium emits, W: the mean of the channels. For a homogeneous medium an upper bound, as if it filled
+// the box of its surfaces, or of the scene.
 double RoughPowerOf(const Medium& medium, int32_t index, const GeometryScene& geometry);
 
 class MediumEmission {
  public:
-  // `geometry` has to outlive it. `within`: beyond this sphere there is vacuum. `exterior`: the medium at points from
-  // where no surface that separates media is seen. `unbounded`: the medium that is not bounded by opaque surfaces,
-  // whatever their sides say; nullopt: there is none.
+  // `geometry` has to outlive this. `within`: beyond this sphere there is vacuum. `exterior`: the medium at points from
+  // which no surface that separates media is visible. `unbounded`: a medium that opaque surfaces do not bound, whatever
+  // media they declare; nullopt: none.
   MediumEmission(std::vector<std::shared_ptr<const Medium>> media, const GeometryScene& geometry,
                  const BoundingSphere& within, int32_t exterior, std::optional<int32_t> unbounded = std::nullopt);
 
   // Estimate of the emitted power, W: the mean of the channels. Larger than 0 if a medium may emit.
   double Power() const { return power_; }
 
-  // Samples a point in proportion to the emitted power, as far as that is known: the density is exact. nullopt: the
-  // point is not in the chosen medium, or emits nothing; its sample is worth 0. `u`: three random numbers
-  // in [0,1) for the place, and `uSelect` for choices. Requires Power() > 0.
+  // Samples a point in proportion to the estimated emitted power; the density is exact. nullopt: the point is not in
+  // the chosen medium, or emits nothing; the sample is 0. `u`: three random numbers in [0,1) for the position, and
+  // `uSelect` for choices. Requires Power() > 0.
   std::optional<EmissionPoint> Sample(double uSelect, const Vector3& u, float time) const;
 
  private:

@@ -41,7 +41,7 @@ struct ScatteringParameters {
   Color Extinction() const { return absorption + scattering; }
 };
 
-// "sigma_a", "sigma_s" and "g"; "preset" and "scale" as far as the type has them.
+// "sigma_a", "sigma_s" and "g"; "preset" and "scale" if the type has them.
 ScatteringParameters GetScattering(const ParameterList& parameters, bool hasPreset, bool hasScale);
 
 // "temperaturescale", and "temperatureoffset" or by its older name "temperaturecutoff".

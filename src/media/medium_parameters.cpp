@@ -9,7 +9,7 @@ namespace lampyr {
 float GetNonNegative(const ParameterList& parameters, const std::string& name, double defaultValue) {
   const double value = parameters.GetFloat(name, defaultValue);
   if (value < 0) throw Error(parameters.WhereOf(name), "\"" + name + "\" must not be negative");
-  return static_cast<float>(value);  // no number of a scene file is beyond the range of floats
+  return static_cast<float>(value);  // in range: numbers of a scene file are floats
 }
 
 float GetAsymmetry(const ParameterList& parameters) {

@@ -1,5 +1,5 @@
-// The only source that knows NanoVDB's header, of which it uses the layout of the format and none of the code that
-// follows offsets.
+// The only source that depends on NanoVDB's header: it uses the layout of the format, but none of the code that follows
+// offsets.
 //
 // A file is a sequence of segments: a header, a directory of grids, then the grids. A grid is a tree of three levels of
 // nodes below the root (upper 32³, lower 16³, leaf 8³ voxels); the nodes of a level are an array.
@@ -25,13 +25,13 @@ using Leaf = nanovdb::NanoLeaf<float>::DataType;
 
 constexpr uint32_t kFormat = 32;
 
-// "NanoVDB" and a digit, which newer versions of the same format have raised from 0.
+// "NanoVDB" and a digit: 0, or larger in newer versions of the same format.
 bool IsMagic(uint64_t magic) {
   constexpr uint64_t kName = NANOVDB_MAGIC_NUMBER & 0x00ffffffffffffff;
   return (magic & 0x00ffffffffffffff) == kName && magic >> 56 >= '0' && magic >> 56 <= '2';
 }
 
-// Takes values and runs of bytes from the front.
+// Reads values and runs of bytes from the front.
 class ByteCursor {
  public:
   explicit ByteCursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -54,7 +54,7 @@ class ByteCursor {
   std::span<const std::byte> bytes_;
 };
 
-// Memory that nodes may lie in.
+// Memory for nodes.
 struct alignas(64) Block {
   std::byte bytes[64];
 };
@@ -63,7 +63,7 @@ struct alignas(64) Block {
   throw Error("it is damaged: " + what);
 }
 
-// A grid in memory, with all arrays of nodes known to lie in it.
+// A grid in memory whose arrays of nodes have been checked to lie in it.
 class GridTree {
  public:
   explicit GridTree(std::span<const std::byte> bytes) : bytes_(bytes) {
@@ -87,8 +87,8 @@ class GridTree {
   size_t LeafCount() const { return counts_[0]; }
   const Leaf& LeafNode(size_t i) const { return leaves_[i]; }
 
-  // Children, by what a parent has stored: the offset from itself. Each may be asked for once: shared nodes would make
-  // a tree larger than its file.
+  // Children, by the offset that their parent stores, relative to the parent. Each may be requested once: shared nodes
+  // would make a tree larger than its file.
   const Upper& UpperOf(int64_t offset) { return uppers_[ChildIndex(root_, offset, 2, sizeof(Upper))]; }
   const Lower& LowerOf(const Upper& parent, int64_t offset) {
     return lowers_[ChildIndex(&parent, offset, 1, sizeof(Lower))];
@@ -197,7 +197,7 @@ class TreeCopier {
   }
 
   void Fill(const std::array<int, 3>& origin, int side, float value) const {
-    if (value == tree_.RootNode().mBackground) return;  // as all voxels are before
+    if (value == tree_.RootNode().mBackground) return;  // the value of all voxels before the copy
     const IndexBox& range = voxels_.BrickRange();
     std::array<int, 3> first, last, at;
     for (int axis = 0; axis < 3; ++axis) {
@@ -226,7 +226,7 @@ Transform IndexToMedium(const nanovdb::Map& map) {
   return transform;
 }
 
-// The box of active voxels; of a grid without, a single one.
+// The box of active voxels; a single voxel if the grid has none.
 IndexBox BoxOf(const Root& root) {
   IndexBox box;
   if (root.mTableSize == 0 || root.mBBox.max()[0] < root.mBBox.min()[0]) return box;
@@ -240,9 +240,9 @@ IndexBox BoxOf(const Root& root) {
   return box;
 }
 
-// Throws an Error if data of `packed` bytes cannot be that of a grid of `size`: before memory is taken for it.
+// Throws an Error if `packed` bytes cannot contain a grid of `size` bytes, before memory is allocated for it.
 void CheckSize(nanovdb::io::Codec codec, uint64_t packed, uint64_t size) {
-  constexpr uint64_t kLargestGrowth = 1100;  // by compression, which reaches 1032
+  constexpr uint64_t kLargestGrowth = 1100;  // of compression, which reaches 1032
   const bool isZipped = codec == nanovdb::io::Codec::ZIP;
   if (isZipped ? size / kLargestGrowth > packed : size != packed)
     Damaged("the directory gives a grid another size than it has");

@@ -20,7 +20,7 @@ struct NanoVdbData {
   bool isEmissive = false;
 };
 
-// Its space is that of the indices of densities, in which the box is [min, max + 1], as in pbrt-v4.
+// The box's space is that of the indices of densities, in which the box is [min, max + 1], as in pbrt-v4.
 class NanoVdbMedium : public BoxMedium {
  public:
   NanoVdbMedium(const std::string& name, NanoVdbData data, const Affine& toIndex, MajorantGrid majorants)
@@ -47,7 +47,7 @@ class NanoVdbMedium : public BoxMedium {
   NanoVdbData data_;
 };
 
-// Of all values that may be interpolated, the background's among them; at least 0.
+// The largest value that interpolation may return, the background included; at least 0.
 float LargestOf(const SparseVoxels& voxels) {
   IndexBox box = voxels.Box();
   for (int& upper : box.max) ++upper;
@@ -86,7 +86,7 @@ NanoVdbGrids ReadGrids(const MediumInput& input) {
   }
 }
 
-// The light of the temperatures, which the file may have or not.
+// Emission by the temperatures, if the file has them.
 void ReadEmission(const MediumInput& input, NanoVdbGrids& grids, float densest, NanoVdbData& data) {
   const ParameterList& parameters = input.Parameters();
   data.radianceScale =

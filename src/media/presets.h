@@ -10,7 +10,7 @@ namespace lampyr {
 
 struct MeasuredScattering {
   const char* name;
-  Color scattering, absorption;  // σ_s', as if scattering were isotropic, and σ_a; 1/mm
+  Color scattering, absorption;  // σ_s' (reduced: equivalent isotropic scattering) and σ_a; 1/mm
 };
 
 // Null if there is no preset of that name.

@@ -73,7 +73,7 @@ RgbGridData ReadRgbGrid(const MediumInput& input) {
 }
 
 MajorantGrid MakeMajorants(const RgbGridData& data, const Affine& toGrid) {
-  // A constant coefficient does not fall off at the sides of the box: it is added to the bounds of the grid.
+  // A constant coefficient does not fall off at the sides of the box, so that it is added to the bounds of the grid.
   const bool isConstant[2] = {data.absorption.empty(), data.scattering.empty()};
   const std::vector<Color>& first = isConstant[0] ? data.scattering : data.absorption;
   std::vector<float> extinction;

@@ -164,10 +164,10 @@ GridResolution MajorantResolution(const SparseVoxels& voxels) {
 namespace {
 
 struct Range {
-  int first = 0, last = 0;  // both included
+  int first = 0, last = 0;  // both inclusive
 };
 
-// For each cell along an axis, the voxels that values within it are interpolated from; both ends ascend.
+// For each cell along an axis, the voxels from which values within it are interpolated; both ends ascend.
 std::vector<Range> VoxelRanges(const IndexBox& box, int axis, int cells) {
   const double side = static_cast<double>(box.Extent(axis)) / cells;
   const double first = box.min[axis], last = static_cast<double>(box.max[axis]) + 1;
@@ -179,7 +179,7 @@ std::vector<Range> VoxelRanges(const IndexBox& box, int axis, int cells) {
   return ranges;
 }
 
-// The cells that voxels of `voxels` take part in.
+// The cells whose values depend on the voxels `voxels`.
 Range CellsOf(const std::vector<Range>& ranges, Range voxels) {
   const auto first =
       std::partition_point(ranges.begin(), ranges.end(), [&](const Range& range) { return range.last < voxels.first; });
@@ -190,7 +190,7 @@ Range CellsOf(const std::vector<Range>& ranges, Range voxels) {
 
 }  // namespace
 
-// Bricks are gone through once, and runs of equal constants as one: most of a large box is empty.
+// Visits each brick once, and each run of equal constants as one: most of a large box is empty.
 std::vector<float> MajorantsOf(const SparseVoxels& voxels, const GridResolution& cells, float factor) {
   const size_t count = static_cast<size_t>(cells[0]) * static_cast<size_t>(cells[1]) * static_cast<size_t>(cells[2]);
   std::vector<float> majorants(count, std::max(voxels.Background(), 0.0f));

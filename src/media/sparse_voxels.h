@@ -1,4 +1,4 @@
-// Voxels in bricks of 8³, of which most may be empty: what a NanoVDB file becomes.
+// Voxels in bricks of 8³, most of which may be empty: a NanoVDB grid in memory.
 #pragma once
 
 #include <array>
@@ -24,12 +24,13 @@ class SparseVoxels {
  public:
   static constexpr int kSide = 8, kBrickVoxels = kSide * kSide * kSide;
 
-  // All voxels have the value `background`. Table and `brickCount` bricks are counted against `memory`; `where` and
-  // `name` are for the Error if they exceed it.
+  // Sets all voxels to `background`. Table and `brickCount` bricks are counted against `memory`; `where` and `name` are
+  // for the Error if they exceed it.
   SparseVoxels(const IndexBox& box, float background, size_t brickCount, MemoryBudget& memory,
                const FileLocation& where, const std::string& name);
 
-  // Bricks are numbered over all that touch `Box()`, one voxel more at the upper ends: BrickRange() along each axis.
+  // Bricks are numbered over all that overlap `Box()`, extended by one voxel at the upper ends: BrickRange() along each
+  // axis.
   const IndexBox& BrickRange() const { return bricks_; }
   // The voxels of brick i of `brickCount`: x slowest, z fastest.
   float* Brick(size_t i) { return &values_[i * kBrickVoxels]; }
@@ -37,7 +38,7 @@ class SparseVoxels {
   void Place(const std::array<int, 3>& position, size_t i) { table_[TableIndex(position)] = static_cast<uint32_t>(i); }
   void PlaceConstant(const std::array<int, 3>& position, float value);
 
-  // Active voxels. Beyond them, values may be interpolated towards the next voxel's.
+  // Box of the active voxels. Beyond it, values are interpolated towards the next voxel's.
   const IndexBox& Box() const { return box_; }
   float Background() const { return constants_[0]; }
   // The background outside of the bricks.
@@ -46,8 +47,8 @@ class SparseVoxels {
   float Interpolate(const Point3& index) const;
   // The largest value of the voxels from `box.min` to `box.max`.
   float Maximum(const IndexBox& box) const;
-  // Calls visit(box, entry) for bricks in turn, and for runs of bricks that have the same constant; not for constants
-  // up to 0. `entry` is for the two methods below.
+  // Calls visit(box, entry) for each brick, and for each run of bricks with the same constant, except for constants up
+  // to 0. `entry` is for the two methods below.
   void ForRuns(const std::function<void(const IndexBox&, uint32_t)>& visit) const;
   // The largest value, at least 0, of a brick, and of the part of it that is within a box of voxels it has.
   float MaximumOfEntry(uint32_t entry) const;
@@ -61,14 +62,14 @@ class SparseVoxels {
  private:
   static constexpr int Floor8(int x) { return x >> 3; }
   static size_t OffsetInBrick(int x, int y, int z);
-  // Of the table, by a voxel; that of the background outside of it.
+  // Entry of the table for the brick of a voxel; outside of the table, that of the background.
   uint32_t EntryAt(int x, int y, int z) const;
   bool IsInRange(const std::array<int, 3>& position) const;
   size_t TableIndex(const std::array<int, 3>& position) const;
 
   IndexBox box_, bricks_;
   std::array<size_t, 3> brickCounts_{};
-  std::vector<uint32_t> table_;  // a brick's number; from brickCount_ on, that of a constant
+  std::vector<uint32_t> table_;  // number of a brick; from brickCount_ on, of a constant
   std::vector<float> values_, constants_;
   size_t brickCount_ = 0;
 };

@@ -1,5 +1,5 @@
-// Transmittance of thin surfaces and cut-outs at the wavelengths of a pass. Each tint is upsampled by itself, since the
-// spectrum of two panes is the product of their spectra. GeometryScene has the tints in Rec. 709.
+// Transmittance of thin surfaces and cut-outs at the wavelengths of a pass. Each tint is upsampled separately, because
+// the spectrum of two panes is the product of their spectra. GeometryScene has the tints in Rec. 709.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace lampyr {
 
-// Brings the transmittance of each crossing to the wavelengths.
+// Converts the transmittance of each crossing to the wavelengths.
 void TuneCrossings(const Wavelengths& wavelengths, std::vector<Crossing>& crossings);
 
-// The same, of the crossings that GeometryScene::Transmittance has listed with the result `product`, not 0. Returns
-// their product and that of the cut-outs, which are gray and not listed.
+// The same for crossings that GeometryScene::Transmittance returned with the result `product`, which must not be 0.
+// Returns their product, times that of the cut-outs, which are gray and not listed.
 Color TunedTransmittance(const Wavelengths& wavelengths, const Color& product, std::vector<Crossing>& crossings);
 
 // GeometryScene::Transmittance and GeometryScene::Intersect at the wavelengths.

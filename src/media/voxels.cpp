@@ -54,7 +54,7 @@ struct Line {
   int count;
 
   float Value(int i) const { return i >= 0 && i < count ? first[static_cast<size_t>(i) * stride] : 0.0f; }
-  // Between the centres of voxels, which have whole numbers.
+  // Interpolates between the centres of voxels, which have integer coordinates.
   float Interpolate(double x) const {
     const int i = static_cast<int>(std::floor(x));
     const auto part = static_cast<float>(x - i);
@@ -71,7 +71,7 @@ float MaximumWithin(const Line& line, int cell, int cells) {
   return most;
 }
 
-// Of all lines along an axis, the maxima within cells: a grid of another resolution along that axis.
+// Maxima within cells of all lines along an axis: a grid of another resolution along that axis.
 std::vector<float> MaximaAlong(int axis, std::span<const float> values, const GridResolution& resolution, int cells) {
   size_t stride = 1;  // from voxel to voxel of a line; as many lines start side by side
   for (int i = 0; i < axis; ++i) stride *= static_cast<size_t>(resolution[i]);

@@ -29,12 +29,12 @@ VoxelStencil StencilAt(const GridResolution& resolution, const Point3& point);
 // per 8 voxels, up to 64, of grids with more than 128.
 GridResolution MajorantResolution(const GridResolution& voxels);
 
-// Bounds of the interpolated values in the cells of a grid that is not finer than the voxels, times `factor` ≥ 0. A
-// bound holds a little beyond its cell, and for values that are rounded up: points are in float.
+// Upper bounds of the interpolated values in the cells of a grid that is not finer than the voxels, times `factor` ≥ 0.
+// Each bound also holds a little beyond its cell and for values that are rounded up, because points are in float.
 std::vector<float> MajorantsOf(std::span<const float> values, const GridResolution& voxels, const GridResolution& cells,
                                float factor);
 
-// By how much of its side a cell of majorants is enlarged, and its majorant raised, for rounding.
+// Relative enlargement of a cell of majorants, and of its majorant, to allow for rounding.
 inline constexpr double kCellMargin = 0.01;
 inline constexpr float kMajorantMargin = 1.00001f;
 

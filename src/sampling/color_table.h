@@ -32,7 +32,8 @@ class ColorTable {
     Color color;
   };
   Cell Sample(const Point2& u) const;  // requires !IsZero()
-  // The point of a cell in [0,1]², rounded to float: at the very edge of the cell, Look may find the next cell.
+  // The point of a cell in [0,1]², rounded to float: for a point at the very edge of the cell, Look may find the next
+  // cell.
   Point2 At(const Cell& cell) const {
     return {(static_cast<float>(cell.x) + cell.t.x) * inverseWidth_,
             (static_cast<float>(cell.y) + cell.t.y) * inverseHeight_};

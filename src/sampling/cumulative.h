@@ -1,9 +1,9 @@
 // Cumulative tables of the distributions in sampling/: construction, search and inversion. A Cdf is a pointer to
 // floats, or anything else with operator[], of n + 1 entries for n intervals.
 //
-// The tables count in units of 2^-24, the step of a random float: an interval is chosen exactly as often as its density
-// says, and every nonzero interval can be chosen, however small beside the others. The search starts from a guide table
-// ([Chen74]), which holds the intervals that contain equal steps of u.
+// The tables count in units of 2^-24, the step of a random float: an interval is chosen exactly in proportion to its
+// density, and every nonzero interval can be chosen, however small beside the others. The search starts from a guide
+// table ([Chen74]), which holds the intervals that contain equal steps of u.
 #pragma once
 
 #include <algorithm>
@@ -41,12 +41,12 @@ inline float PointInInterval(int interval, float t, int n) {
   return std::nextafter(x, found < interval ? 1.0f : 0.0f);
 }
 
-// For a table that does not fit the cache: the guide has to fit, and the intervals between two of its steps have to lie
-// in a few cache lines.
+// Number of steps for a table that does not fit the cache: the guide has to fit, and the intervals between two of its
+// steps have to lie in a few cache lines.
 inline size_t GuideSteps(size_t n) {
   return std::max<size_t>(1, n / kIntervalsPerGuideStep);
 }
-// For a small table: hardly any search is left.
+// Number of steps for a small table, which leaves hardly any search.
 inline size_t FineGuideSteps(size_t n) {
   return 2 * n;
 }
@@ -138,7 +138,7 @@ float InvertCdf(Cdf cdf, int n, float x) {
   return ClampedUnit(cdf[i] + t * (cdf[i + 1] - cdf[i]));
 }
 
-// Sums that may exceed the range of float, scaled by their largest; positive ones stay above 0.
+// Sums that may exceed the range of float, divided by the largest; positive ones stay above 0.
 inline std::vector<float> InRangeOfFloat(std::span<const double> sums) {
   const double largest = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
   std::vector<float> scaled;

@@ -44,8 +44,8 @@ class Sampler {
   uint32_t reversedIndex_ = 0;  // sample index, bits reversed
   uint32_t dimension_ = 0;
   uint64_t pixelHash_ = 0;  // of pixel and seed; for independent samples, also of the index
-  // Blocks computed for this sample, block i at i mod kBlocks: the two subpaths of a bidirectional sample take turns in
-  // the dimensions. `indices_`: which block is there.
+  // Blocks computed for this sample, block i at i mod kBlocks: the two subpaths of a bidirectional sample alternate
+  // between dimensions. `indices_`: index of the block in each slot.
   Block blocks_[kBlocks] = {};
   alignas(32) uint32_t indices_[kBlocks] = {kNoBlock, kNoBlock, kNoBlock, kNoBlock,
                                             kNoBlock, kNoBlock, kNoBlock, kNoBlock};

@@ -22,7 +22,7 @@ class AliasTable {
   AliasTable() = default;
   explicit AliasTable(std::span<const float> weights);
 
-  // The two floats first: beside an integer they would be returned by way of memory, where store forwarding stalls.
+  // The two floats come first: beside an integer they would be returned through memory, which stalls store forwarding.
   struct Result {
     PdfDiscrete probability;
     float u;  // the random number, rescaled to [0,1) for reuse

@@ -8,7 +8,7 @@ namespace lampyr {
 
 namespace {
 
-// Every 5 nm [CIE15]. A value is the mean power around its wavelength: lines of mercury are in it.
+// Every 5 nm [CIE15]. A value is the mean power around its wavelength, so that it includes lines of mercury.
 constexpr double kFirst = 380, kStep = 5;
 constexpr size_t kCount = 81;
 constexpr double kLast = kFirst + kStep * (kCount - 1);

@@ -81,7 +81,7 @@ class IesText {
     return value;
   }
 
-  // Reads a count: at least `least`, and not more than the rest of the file has room for.
+  // Reads a count: at least `least`, and limited by the length of the rest of the file.
   size_t Count(const std::string& what, size_t least) {
     SkipSeparators();
     const FileLocation where = Here();
@@ -119,7 +119,7 @@ class IesText {
     return angles;
   }
 
-  // After the last of `count` values. Words that are no numbers are remarks.
+  // Called after the last of `count` values. Words that are no numbers are remarks.
   void CheckNoNumberFollows(size_t count) {
     SkipSeparators();
     const size_t end = std::min(text_.find_first_of(kSeparators, position_), text_.size());
@@ -151,8 +151,8 @@ class IesText {
 
 // The factor on the output of the lamp at tilt 0. A tilt table gives the output over the angle by which the luminaire
 // is tilted out of the position in which it was measured, for lamps whose output depends on it: a factor on the whole
-// distribution, not one over its directions. The lamp-to-luminaire geometry says which tilts count: 1, the lamp is
-// vertical and all do; 2 and 3, it lies in the 0°-180° or the 90°-270° plane, and tilting across the lamp changes
+// distribution, not one over its directions. The lamp-to-luminaire geometry determines which tilts count: 1, the lamp
+// is vertical and all do; 2 and 3, it lies in the 0°-180° or the 90°-270° plane, and tilting across the lamp changes
 // nothing. A scene has no gravity: the luminaire burns as measured, at a tilt of 0, whatever the geometry.
 double ReadTiltFactor(IesText& text) {
   text.NumberInRange("the lamp-to-luminaire geometry", 1, 3, "1, 2 or 3");
@@ -219,7 +219,7 @@ std::string TiltFileOf(const std::string& iesFile) {
     if (upper == "NONE" || upper == "INCLUDE" || upper.empty()) return "";
     return TiltFile(text, labels.tilt).string();
   } catch (const Error&) {
-    return "";  // told of when the light is made
+    return "";  // reported when the light is made
   }
 }
 

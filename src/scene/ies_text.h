@@ -21,7 +21,7 @@ struct IesFile {
   FileLocation verticalWhere, horizontalWhere;  // of the first angle
 };
 
-// The file that the tilt of an IES file is in; "": it is in none, or the file cannot be read.
+// The file with the tilt table of an IES file; "": there is none, or the file cannot be read.
 std::string TiltFileOf(const std::string& iesFile);
 
 // Throws located Errors.

@@ -1,5 +1,5 @@
-// Limits of what a scene file may ask for. No scene intended for rendering comes near them: they protect the machine
-// from broken or hostile files.
+// Limits of the demands of a scene file. No scene intended for rendering comes near them: they protect the machine from
+// broken or hostile files.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ inline constexpr size_t kNamedFiles = 50'000;          // executed Include and I
 inline constexpr uint64_t kRepeatedText = 1ull << 30;  // bytes of files that are included again
 inline constexpr size_t kOpenScopes = 50'000;          // nested AttributeBegin and ObjectBegin
 inline constexpr size_t kParameters = 1000;            // per statement
-// For one target of Attribute: each statement that follows holds a copy.
+// For one target of Attribute, because each statement that follows holds a copy.
 inline constexpr size_t kDefaultParameters = 64, kDefaultValues = 1000;
 inline constexpr size_t kNestedNames = 256;        // nested textures, materials, light filters or motions
 inline constexpr size_t kEvaluations = 2000;       // of nested textures or filters, per evaluation of the outermost

@@ -1,11 +1,11 @@
 // The named spectra of pbrt-v4 as curves.
 //
-// Glasses: dispersion formulas of the manufacturer's data sheets. pbrt-v4 has the lead-free types, and so have we:
+// Glasses: dispersion formulas of the manufacturer's data sheets. pbrt-v4 has the lead-free types, and so does lampyr:
 // BAF10, LASF9, F5, F10 and F11 are N-BAF10, N-LASF9, N-SF5, N-SF10 and N-SF11.
 //
 // Metals and oxides: Ag, Al, Au and Cu as collected in [Palik85], at each tenth of an electronvolt; CuZn (brass, 70 %
 // Cu) of [Querry85]; MgO by the formula of [Stephens52] for its whole range; TiO2 by that of [Devore51] for the
-// extraordinary ray, which holds from 430 nm on and is continued below. The oxides do not absorb.
+// extraordinary ray, which is valid from 430 nm on and is extrapolated below. The oxides do not absorb.
 //
 // Illuminants [CIE15]: A by its formula, D50, D65 and D60 of ACES by the vectors of daylight, F1 to F12 by tables.
 #include <algorithm>
@@ -72,8 +72,8 @@ constexpr Table<25> kBrass[] = {
                       3.434, 3.609, 3.778, 3.943, 4.106, 4.266, 4.424, 4.579, 4.737, 4.89,  5.039, 5.192}},
 };
 
-// Linear between the entries and the middles between these. A middle is of the cubic through the four entries around
-// it: straight lines from entry to entry would miss the edge of gold by 2 %.
+// Linear between the entries and their midpoints. The value at a midpoint is that of the cubic through the four entries
+// around it: straight lines from entry to entry would miss the edge of gold by 2 %.
 template <size_t count>
 double Interpolate(const std::array<double, count>& values, double position) {
   const auto half = [&](size_t i) {
@@ -134,7 +134,7 @@ double IlluminantA(double wavelength) {
 // Relative spectral powers.
 std::optional<SpectralCurve> FindPower(const std::string& name) {
   if (name == "stdillum-A") return SpectralCurve(IlluminantA);
-  // Weights as of the table of D50 [CIE15], and by the chromaticity of D60.
+  // Weights as in the table of D50 [CIE15], and by the chromaticity of D60.
   if (name == "stdillum-D50")
     return SpectralCurve([](double wavelength) { return Daylight(wavelength, -1.039, 0.363); });
   if (name == "stdillum-D65") return SpectralCurve(DaylightD65);
@@ -155,7 +155,7 @@ std::optional<SpectralCurve> FindNamedCurve(const std::string& name, SpectrumRol
   }
   const auto power = FindPower(name);
   if (!power) return std::nullopt;
-  // Exactly white.
+  // D65 is exactly white.
   if (name == "stdillum-D65" && role != SpectrumRole::Albedo) return SpectralCurve([](double) { return 1.0; });
   // A power distribution that is given as a coefficient is treated as light, as in RGB.
   return CurveOfPower(*power, role == SpectrumRole::Albedo ? role : SpectrumRole::Illuminant);

@@ -1,6 +1,6 @@
-// Nesting of named objects: textures of textures, materials of materials, filters of filters. Evaluating one evaluates
-// those within it, recursively, each as often as it is named: a few lines can describe more evaluations than a machine
-// can execute. Counted while the objects are made, each after the objects that it names.
+// Nesting of named objects: textures of textures, materials of materials, filters of filters. Evaluating an object
+// evaluates those within it, recursively, each as often as it is named: a few lines can describe more evaluations than
+// a machine can execute. They are counted while the objects are made, each object after those that it names.
 #pragma once
 
 #include <algorithm>

@@ -34,7 +34,7 @@ std::string Normalized(const std::string& name) {
 
 }  // namespace
 
-// A statement that a scene has once.
+// A statement that a scene may have only once.
 void SceneParser::ReadOnly(const Token& statement, StatementDescription& into) {
   if (into.where.file) {
     diagnostics_.Warn(statement.where,
@@ -92,7 +92,7 @@ void SceneParser::Option(const Token& statement) {
   if (name.kind != TokenKind::String) {
     throw Error(name.where, "Option needs a name in quotes, found " + Describe(name));
   }
-  const size_t lastBlank = name.text.find_last_of(" \t");  // "bool wavefront" is taken as "wavefront"
+  const size_t lastBlank = name.text.find_last_of(" \t");  // "bool wavefront" is read as "wavefront"
   Parameter option;
   option.name = Normalized(lastBlank == std::string::npos ? name.text : name.text.substr(lastBlank + 1));
   option.where = name.where;

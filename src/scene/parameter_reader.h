@@ -9,9 +9,9 @@
 
 namespace lampyr {
 
-// Reads parameters up to the next token that is not a string. rgb values are interpreted in `colorSpace`. Of a
-// parameter that is given twice the last one counts, with a warning. Throws located Errors for unknown types, values of
-// the wrong type, unterminated lists, and a name with two types.
+// Reads parameters up to the next token that is not a string. rgb values are interpreted in `colorSpace`. If a
+// parameter is given twice, the last one counts, with a warning. Throws located Errors for unknown types, values of the
+// wrong type, unterminated lists, and a name with two types.
 std::vector<Parameter> ReadParameters(TokenStream& tokens, RgbColorSpace colorSpace, Diagnostics& diagnostics);
 
 }  // namespace lampyr

@@ -1,5 +1,5 @@
-// Parameters of a scene statement: typed, with their places in the file, and a record of which were used, by which
-// misspelt ones are found. Numbers are double, as read.
+// Parameters of a scene statement: typed, with their locations in the file. Unused ones are recorded, to find misspelt
+// names. Numbers are double, as read.
 #pragma once
 
 #include <cstdint>
@@ -54,7 +54,7 @@ struct Parameter {
 // The meaning of a colour, which determines how a spectrum becomes RGB ([Pharr23 §4.6]).
 enum class SpectrumRole {
   Albedo,      // reflectance: its colour under the white of the colour space
-  Unbounded,   // η, k: averaged per channel; beyond its samples a spectrum goes on as it ends
+  Unbounded,   // η, k: averaged per channel; a spectrum is constant beyond its samples
   Extinction,  // σ: averaged per channel; 0 beyond the samples of a spectrum, as those of light and albedo
   Illuminant,  // light: the colour at luminance 1 of spectra and blackbodies (pbrt-v4's unit rule); rgb as given
 };
@@ -104,7 +104,8 @@ class ParameterList {
   // The parameter of any type, or null. Marks it as used.
   const Parameter* Find(const std::string& name) const;
 
-  // The colour space of the statement, and its white as light in Rec. 709: what lights emit that name no colour.
+  // Sets the colour space of the statement; also determines its white as light in Rec. 709, the default colour of
+  // lights.
   void SetColorSpace(RgbColorSpace space) { colorSpace_ = space; }
   RgbColorSpace ColorSpace() const { return colorSpace_; }
   Color White() const;

@@ -32,7 +32,7 @@ void SceneParser::CheckReferences() const {
 }
 
 // Depth-first search without recursion: objects may be nested as deep as a file is long. Nested instances multiply, so
-// that a few lines can ask for more than any memory holds.
+// that a few lines can describe more than any memory holds.
 void SceneParser::CountInstances() {
   enum class Mark { New, Open, Done };
   std::vector<Mark> marks(scene_.objects.size(), Mark::New);

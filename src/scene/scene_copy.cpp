@@ -42,7 +42,7 @@ std::string Shortest(double number) {
   return {buffer.data(), end};
 }
 
-// The text of one file, and what of it is replaced.
+// The text of one file, and its replacements.
 class EditedText {
  public:
   explicit EditedText(const fs::path& file) : text_(ReadTextFile(file, {})) {
@@ -120,7 +120,7 @@ class Copier {
  private:
   using Place = std::pair<int, int>;
 
-  // The copy of the file; nullopt: it has none.
+  // Adds the copy of the file, and returns its path; nullopt: no copy is needed.
   std::optional<fs::path> Visit(const fs::path& file, bool isScene) {
     const std::string canonical = Canonical(file);
     const auto [known, isNew] = copyOf_.emplace(canonical, std::nullopt);
@@ -158,7 +158,7 @@ class Copier {
     const fs::path file = FindSceneFile(name.text, writer.string(), scene_.string());
     const std::optional<fs::path> copy = Visit(file, false);
     if (!copy) return;
-    // A file that is included by two names has one copy.
+    // A file that is included under two names has one copy.
     const fs::path written = *copy == PathOfCopy(file, suffix_) ? PathOfCopy(name.text, suffix_) : fs::absolute(*copy);
     edited.Replace(edited.Begin(name), edited.End(name), Quoted(written.string()));
   }

@@ -1,4 +1,4 @@
-// A copy of a scene's text in which parameters of statements are changed. All else stays as it was written: comments,
+// A copy of a scene's text in which parameters of statements are changed. Everything else is unchanged: comments,
 // order, line breaks.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace lampyr {
 
-// Parameters of one statement, to be replaced where the statement has them and added where it has not.
+// Parameters of one statement, which replace those of the same name or are added.
 struct StatementChange {
   FileLocation where;  // of the statement
   std::vector<Parameter> parameters;
@@ -22,17 +22,17 @@ struct CopiedFile {
   std::string text;
 };
 
-// The scene's own file, and those of the files that it includes in which statements are changed, or that include such
-// ones; each is to be written beside its original, as NAME + `suffix`, so that names of files in it mean the same.
-// A copy that includes others names their copies. The last one is that of the scene. Throws an Error if a file
-// is no longer as it was when the scene was read: there is no such statement any more.
+// Copies of the scene's own file, and of the included files in which statements are changed or that include such files.
+// Each is to be written beside its original, as NAME + `suffix`, so that file names in it keep their meaning. A copy
+// that includes others names their copies. The last one is that of the scene. Throws an Error if a file has changed
+// since the scene was read, so that it has no such statement any more.
 std::vector<CopiedFile> CopyScene(const std::filesystem::path& scene, const std::vector<StatementChange>& changes,
                                   const std::string& suffix);
 
 // The path of the copy of a file: "stage.pbrt" and "stage.pbrt.gz" with the suffix ".desk" are "stage.desk.pbrt".
 std::filesystem::path PathOfCopy(const std::filesystem::path& original, const std::string& suffix);
 
-// As a scene file would write it: "float intensity" 2. Numbers are read back as they were.
+// The parameter as in a scene file: "float intensity" 2. Numbers are read back exactly.
 std::string Written(const Parameter& parameter);
 
 }  // namespace lampyr

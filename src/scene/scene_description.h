@@ -1,5 +1,5 @@
 // A scene as described by its file: plain data in double precision. Nothing is built, and no file but the scene's own
-// (and its includes) is opened. Every part holds its place in the file.
+// (and its includes) is opened. Every part holds its location in the file.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,7 @@ struct StatementDescription {
   ParameterList parameters;
   FileLocation where;
 
-  // A name for what has none: "sphere scene.pbrt:12:3".
+  // A name for an object without one: "sphere scene.pbrt:12:3".
   std::string NameByPlace() const {
     const std::string file = where.file ? std::filesystem::path(*where.file).filename().string() : "";
     return type + " " + file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column);

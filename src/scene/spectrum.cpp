@@ -183,12 +183,12 @@ SpectralCurve BlackbodyCurve(double kelvin, SpectrumRole role) {
 
 namespace {
 
-// `whereOf`: the place of a pair.
+// `whereOf`: the location of a pair.
 std::vector<SpectrumSample> CheckedPairs(const std::vector<double>& numbers, SpectrumRole role,
                                          const FileLocation& where,
                                          const std::function<FileLocation(size_t)>& whereOf) {
   constexpr double kLargestAlbedo = 1.1;  // measurements are off by a few percent
-  constexpr double kShortest = 100;       // nm; a spectrum that ends below says nothing about light
+  constexpr double kShortest = 100;       // nm; a spectrum that ends below has no visible wavelength
   if (numbers.size() % 2 != 0) {
     throw Error(where, "a spectrum is pairs of wavelength and value: " + std::to_string(numbers.size()) +
                            " numbers are not a multiple of 2");

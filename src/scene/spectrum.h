@@ -33,13 +33,13 @@ Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
 Color BlackbodyToColor(double kelvin, SpectrumRole role);
 
 // The light of a blackbody of `kelvin` > 0 whose spectrum is scaled to a maximum of 1 per nanometre, over all
-// wavelengths and not the visible ones alone (BlackbodySpectrum of pbrt-v4): the luminance, ∫ ȳ(λ) L(λ) dλ, tells the
-// temperatures apart. It is 100.7 at 6000 K, and 9.6e-4 at 1000 K.
+// wavelengths and not the visible ones alone (BlackbodySpectrum of pbrt-v4): the luminance, ∫ ȳ(λ) L(λ) dλ, depends on
+// the temperature. It is 100.7 at 6000 K, and 9.6e-4 at 1000 K.
 Color NormalizedBlackbody(double kelvin);
 
 // Converts a list λ0 v0 λ1 v1 …. Throws an Error at `where` unless it has at least two pairs, increasing wavelengths
 // that are not all below 100 nm (micrometres), and no negative values; for the role Albedo, none above 1 by more than
-// what measurements are off (1.1).
+// the error of measurements (1.1).
 std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, SpectrumRole role,
                                               const FileLocation& where);
 
@@ -58,8 +58,8 @@ SpectralCurve CurveOf(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
 SpectralCurve BlackbodyCurve(double kelvin, SpectrumRole role);
 // nullopt for a name without a curve.
 std::optional<SpectralCurve> FindNamedCurve(const std::string& name, SpectrumRole role);
-// A spectral power distribution, in any unit, as it is used for a role: that of an illuminant is brought to luminance 1
-// and divided by D65; as a reflectance its largest value is 1.
+// A spectral power distribution, in any unit, converted for a role: for an illuminant, scaled to luminance 1 and
+// divided by D65; for a reflectance, scaled to a maximum of 1.
 SpectralCurve CurveOfPower(const SpectralCurve& power, SpectrumRole role);
 
 }  // namespace lampyr

@@ -50,8 +50,8 @@ void SceneParser::CloseScope(const Token& statement, bool isObject) {
 
 namespace {
 
-// Attributes of the targets "lighting" and "lightfilter" are not defaults of other statements: their parameters are
-// known here.
+// Checks attributes of the targets "lighting" and "lightfilter". They are not defaults of other statements, so that
+// their parameters can be checked here.
 void CheckLinking(const std::string& target, const Parameter& parameter) {
   std::vector<std::string> names = {"subset"};
   if (target == "lighting") names.emplace_back("excludesubset");

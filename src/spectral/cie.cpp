@@ -129,7 +129,7 @@ constexpr double kM1 = -0.295, kM2 = -0.689;
 
 }  // namespace
 
-// Between the entries by cubics through four of them ([Catmull74]), never below 0.
+// Interpolates between the entries by cubics through four of them ([Catmull74]), clamped to 0.
 Vector3d ColorMatching(double lambda) {
   constexpr int kLast = static_cast<int>(kMatching.size()) - 1;
   const double position = (lambda - kLambdaMin) / kMatchingStep;

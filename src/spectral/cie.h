@@ -13,7 +13,7 @@ Vector3d ColorMatching(double lambda);
 // Relative spectral power of CIE daylight D65 (100 at 560 nm): the mean and two characteristic vectors, tabulated every
 // 10 nm [CIE15].
 double DaylightD65(double lambda);
-// That of another phase of daylight, by the weights M1 and M2 of the characteristic vectors.
+// The same for another phase of daylight, by the weights M1 and M2 of the characteristic vectors.
 double Daylight(double lambda, double m1, double m2);
 
 // Planck's law at `kelvin`, up to a factor that keeps it in range for every temperature above 0.

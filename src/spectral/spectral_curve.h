@@ -15,10 +15,10 @@ class SpectralCurve {
   static constexpr size_t kCount = kLast - kFirst + 1;
 
   SpectralCurve() = default;  // 0
-  // Tabulates a function of the wavelength in nm. One that varies within a nanometre is to be averaged by the caller.
+  // Tabulates a function of the wavelength in nm. The caller has to average a function that varies within a nanometre.
   explicit SpectralCurve(const std::function<double(double)>& f);
 
-  // `wavelength` in nm; the ends continue.
+  // `wavelength` in nm; constant beyond the ends.
   double At(double wavelength) const;
   double Entry(size_t i) const { return values_[i]; }
   static double WavelengthOf(size_t i) { return kFirst + static_cast<double>(i); }

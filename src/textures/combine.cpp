@@ -82,7 +82,7 @@ ParameterOf<Value> MakeScale(const TextureRequest& request) {
     if (auto scaled = texture.Scaled(factor)) return ParameterOf<Value>(std::move(scaled));
   }
   if constexpr (std::is_same_v<Value, float>) {
-    // The two may be swapped, as in pbrt-v4.
+    // The two parameters may be swapped, as in pbrt-v4.
     if (texture.IsConstant())
       if (auto scaled = scale.Scaled(texture.Evaluate({}))) return FloatParameter(std::move(scaled));
   }

@@ -32,8 +32,8 @@ class FloatImageTexture : public FloatTexture {
   bool invert_;
 };
 
-// Values are never negative, and never above 1 for an albedo: an image may contain anything, but a surface must not
-// create energy.
+// Values are never negative, and never above 1 for an albedo: whatever the image contains, a surface must not create
+// energy.
 class ColorImageTexture : public ColorTexture {
  public:
   ColorImageTexture(const TextureMapping2D& mapping, TexelLookup texels, float scale, bool invert, bool isAlbedo)
@@ -63,8 +63,8 @@ class ColorImageTexture : public ColorTexture {
   float largest_;
 };
 
-// Index of the entry of `names` that the string parameter gives; throws an Error with the nearest entry if there is
-// none.
+// Index in `names` of the value of a string parameter; throws an Error that suggests the nearest entry for any other
+// value.
 size_t ReadChoice(const ParameterList& parameters, const std::string& name, const std::vector<std::string>& names) {
   const std::string value = parameters.GetString(name, names[0]);
   const auto found = std::find(names.begin(), names.end(), value);
@@ -84,7 +84,7 @@ float ReadGamma(const std::string& encoding) {
   return *end == '\0' && gamma > 0 && std::isfinite(gamma) ? gamma : 0;
 }
 
-// The image with 0 in place of what is not finite, which filtering would spread.
+// The image with 0 in place of values that are not finite, which filtering would spread.
 std::shared_ptr<const Image> Finite(const std::shared_ptr<const Image>& image, const TextureRequest& request) {
   const auto isFinite = [](float x) { return std::isfinite(x); };
   const auto count =

@@ -13,7 +13,7 @@ int Modulo(int a, int n) {
   return r < 0 ? r + n : r;
 }
 
-// Alpha that is 1 everywhere says nothing.
+// Alpha that is 1 everywhere does not count.
 bool HasAlpha(const Image& image) {
   const int alpha = image.ChannelIndex("A");
   for (size_t i = static_cast<size_t>(alpha); alpha >= 0 && i < image.data.size(); i += image.channels.size()) {

@@ -18,9 +18,8 @@ class TexelLookup {
  public:
   TexelLookup(std::shared_ptr<const Image> image, WrapMode wrap, bool bilinear);
 
-  // A float is the mean of R, G and B; of an image whose alpha is not 1 everywhere it is the alpha, as in pbrt-v4.
-  // Coordinates that are huge or not finite are clamped to ±2^30 texels (NaN to
-  // -2^30) before wrapping.
+  // A float is the mean of R, G and B; for an image whose alpha is not 1 everywhere it is the alpha, as in pbrt-v4.
+  // Coordinates that are huge or not finite are clamped to ±2^30 texels (NaN to -2^30) before wrapping.
   Color LookupColor(const Point2& st) const { return Lookup<Color>(st); }
   float LookupFloat(const Point2& st) const { return Lookup<float>(st); }
 

@@ -22,8 +22,8 @@ class Texture {
  public:
   virtual ~Texture() = default;
   virtual Value Evaluate(const TextureContext& where) const = 0;
-  // The texture times a factor, if that differs from its values times the factor: those of images are scaled before
-  // they are bounded. Null: it does not differ.
+  // The texture times a factor, if that differs from its values times the factor: values of images are scaled before
+  // they are clamped. Null: it does not differ.
   virtual std::shared_ptr<const Texture> Scaled(float /*factor*/) const { return nullptr; }
 };
 using FloatTexture = Texture<float>;
@@ -38,7 +38,7 @@ class ParameterOf {
 
   bool IsConstant() const { return !texture_; }
   Value Evaluate(const TextureContext& where) const { return texture_ ? texture_->Evaluate(where) : constant_; }
-  // Texture::Scaled; null also of a constant.
+  // Texture::Scaled; null for a constant, too.
   std::shared_ptr<const Texture<Value>> Scaled(float factor) const {
     return texture_ ? texture_->Scaled(factor) : nullptr;
   }
@@ -48,8 +48,8 @@ class ParameterOf {
   std::shared_ptr<const Texture<Value>> texture_;
 };
 
-// A colour parameter. A constant may have a curve, which replaces it where light is carried by wavelength. Textures are
-// colours in Rec. 709, upsampled to the wavelengths of the pass when they are evaluated.
+// A colour parameter. A constant may have a curve, which replaces it in transport by wavelength. Textures are colours
+// in Rec. 709, upsampled to the wavelengths of the pass when they are evaluated.
 template <>
 class ParameterOf<Color> {
  public:
@@ -65,7 +65,7 @@ class ParameterOf<Color> {
     const Color color = texture_->Evaluate(where);
     return wavelengths_ ? wavelengths_->FromRgb(color) : color;
   }
-  // Texture::Scaled; null also of a constant.
+  // Texture::Scaled; null for a constant, too.
   std::shared_ptr<const Texture<Color>> Scaled(float factor) const {
     return texture_ ? texture_->Scaled(factor) : nullptr;
   }

@@ -162,7 +162,7 @@ ColorParameter TextureLibrary::GetColor(const ParameterList& parameters, const s
 
 namespace {
 
-// The image cached under `key`; calls read() at the first use. Errors of read() get the place in the scene file.
+// The image cached under `key`; calls read() at the first use. Errors of read() get the location in the scene file.
 template <class Read>
 std::shared_ptr<const Image> GetCached(std::map<std::string, std::shared_ptr<const Image>>& images,
                                        const std::string& key, const FileLocation& where, Read read) {

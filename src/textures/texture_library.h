@@ -40,7 +40,7 @@ class TextureLibrary {
   // An image of colours (R, G, B) in Rec. 709, whatever primaries and white it was written for (Image::chromaticities).
   std::shared_ptr<const Image> InRec709(const std::shared_ptr<const Image>& image, WhiteHandling white) const;
 
-  // The image with its alpha decoded as its colours are: an amount, as float textures of pbrt-v4 read it.
+  // The image with its alpha decoded like its colours, for float textures: pbrt-v4 reads alpha as an amount.
   std::shared_ptr<const Image> WithDecodedAlpha(const std::shared_ptr<const Image>& image) const;
 
   // An image file, read once and shared. Throws an Error at `where` if it cannot be read.
@@ -54,7 +54,7 @@ class TextureLibrary {
   // A colour texture for each SpectrumRole, which determines how its spectra become RGB.
   struct ColorVariants {
     std::array<ColorParameter, 4> of;
-    std::optional<Error> noAlbedo;  // why it is no reflectance: an error of what uses it as one
+    std::optional<Error> noAlbedo;  // set if it cannot be a reflectance: thrown when it is used as one
   };
   template <class Value>
   struct Named {

@@ -224,7 +224,7 @@ TEST(FilterScenes, OfDensityZeroIsBitIdenticalToNone) {
     }
     EXPECT_TRUE(IsSame(none, render(all + Filter("combiner", "\"string filters\" \"" + names + "\""))));
     EXPECT_FALSE(IsSame(none, render(Filter("blocker", "\"float radius\" 1"))));
-    // Of a group that nothing subscribes to.
+    // A filter in a group to which nothing subscribes.
     EXPECT_TRUE(IsSame(none, render(Filter("blocker", "\"float radius\" 1 \"string linkingGroups\" \"nobody\""))));
   }
 }
@@ -318,7 +318,7 @@ TEST(FilterScenes, NoLightIsCulledByAFilterThatSaysNothing) {
   }
 }
 
-// As many groups as one likes, and no sample goes to a light that is not linked.
+// The number of groups is unlimited, and no sample is spent on a light that is not linked.
 TEST(Linking, HundredsOfGroupsOfLights) {
   std::string text = kHead;
   constexpr int groups = 300;

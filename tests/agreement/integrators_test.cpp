@@ -26,7 +26,7 @@ void ExpectAgreement(const char* what, const AgreementScene& scene, const Replic
   EXPECT_LE(result.chiSquared, result.chiSquaredThreshold) << what;
   EXPECT_LE(std::abs(result.meanZ), result.meanThreshold) << what;
   EXPECT_EQ(path.faults + other.faults, 0u) << what;
-  // What a picture that is 2 % too bright or too dark would have given.
+  // The test must detect a picture that is 2 % too bright or too dark.
   EXPECT_FALSE(CompareReplicas(other, path, scene.blockSize, rate, 1.02).Agrees()) << what << ": too noisy";
   EXPECT_FALSE(CompareReplicas(other, path, scene.blockSize, rate, 0.98).Agrees()) << what << ": too noisy";
 }
@@ -65,7 +65,7 @@ TEST_P(InMedia, IntegratorsAgree) {
     if (isLight && (!scene.lightTracerSeesAll || scene.isCameraInMedium)) continue;
     overrides.seed += 1000;
     overrides.values.clear();
-    // What is merged is blurred.
+    // Merging blurs: a small radius keeps the bias below the noise.
     if (!isLight && !isPath) overrides.values["radius"] = 0.01;
     // All light that is scattered twice is merged, and one photon for each pixel would be too few.
     if (std::string(integrator) == "sppm") overrides.values["radius"] = 0.02, overrides.values["photons"] = 8000;

@@ -174,7 +174,7 @@ TEST_P(LightGroupLayers, AddUpToThePicture) {
   }
 }
 
-// What is not done unless it is asked for.
+// With the options that are off by default.
 TEST(LightGroups, AddUpWithAllSwitches) {
   std::vector<RenderOverrides> all;
   for (const auto& [integrator, merges, connects, direct] :
@@ -242,7 +242,7 @@ TEST_P(LightGroupLayers, OfACropAreThoseOfThePicture) {
 // Every contribution is in the layer of its own light.
 TEST_P(LightGroupLayers, AreWhatTheirLightsGiveAlone) {
   constexpr int replicas = 16, blockSize = 4;
-  // As many as tell 3 % of a layer from nothing.
+  // Samples that suffice to distinguish 3 % of a layer from 0.
   const std::map<std::string, int> samplesOf = {{"path", 96}, {"light", 320}, {"bdpt", 96}, {"sppm", 160}, {"vcm", 64}};
   const int samples = samplesOf.at(GetParam());
   const double rate = SidakRate(1e-3, static_cast<int>(kLayers.size() * std::size(kIntegrators)));

@@ -48,7 +48,7 @@ const OwnScene kOwnScenes[] = {
     {"lights-1000", "bdpt", 16, "light", 64, "0,1,0.55,1", -1, 16, 9, 1.05},
     {"gallery", "bdpt", 8, "path", 16},
     {"caustics", "bdpt", 8, "light", 16},
-    // What only photons find: connections or none, all directions or wide ones.
+    // Light that only photons find: with and without connections, all directions or wide ones.
     {"diver", "vcm", 16, "sppm", 32, nullptr, -1, 16, 18, 1.05, 0.015},
     {"mirror", "vcm", 16, "sppm", 32, nullptr, -1, 16, 18, 1.05, 0.02},
     {"lamp", "sppm", 32, "bdpt", 8, nullptr, -1, 16, 9, 1.03, 0.008},

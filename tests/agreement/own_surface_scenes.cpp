@@ -21,7 +21,7 @@ AgreementScene ShapedLamps() {
   // The camera is 55° from its axis, outside of the cone.
   scene.text += Placed("Translate -0.45 0.75 0.3 Rotate 55 0 1 0 " + kFacesCamera, "rect",
                        "\"float width\" 0.3 \"float height\" 0.3 \"float intensity\" 12" + Cone(40, 0.2));
-  // It shines past the camera: of the side that is turned away from its axis, most photons go inwards.
+  // The light shines past the camera: on the side turned away from its axis, most photons go inwards.
   scene.text += Placed("Translate 0.35 1.2 -0.2 Rotate 60 0 1 0 " + kFacesCamera, "sphere",
                        "\"float radius\" 0.25 \"float intensity\" 6 \"rgb color\" [0.5 0.8 1]" + Cone(75, 0.3));
   scene.text += Placed("Translate 0.75 1.0 -0.4 " + kFacesDown, "sphere",

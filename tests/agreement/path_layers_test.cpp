@@ -155,7 +155,7 @@ TEST(PathLayersOfAll, AreTheSame) {
     const Replicas replicas = RenderReplicas(kScene, integrator, kReplicas, kSamples, overrides);
     for (const Partition& partition : layers) {
       for (const std::string& layer : partition) {
-        // What light tracing finds: paths that leave the camera's vertex by a lobe that is wide.
+        // Layers that light tracing finds: paths that leave the camera's vertex by a wide lobe.
         const bool isFound = integrator != "light" || layer == "direct diffuse" || layer == "indirect diffuse" ||
                              layer == "caustic" || layer == "volume";
         if (isFound)

@@ -194,8 +194,8 @@ double MeasureError(const BuiltScene& built, const PilotCandidate& candidate) {
   return error;
 }
 
-// What decides: on a floor without edges, which are noise within a pixel that the pilot leaves out. A filter that is
-// wider than a pixel spreads splats, and nothing else.
+// The decision on a floor without edges, which are noise within a pixel that the pilot leaves out. A filter wider than
+// a pixel spreads splats alone.
 TEST(Pilot, KnowsTheErrors) {
   const std::string head = "path\" \"integer maxdepth\" [ 3 ] \"string lightsampler\" \"power";
   const std::string spot =
@@ -247,7 +247,7 @@ TEST(Pilot, KnowsTheErrors) {
   }
 }
 
-// What differs between pixels of the image that one pixel of the pilot holds is not noise, and what is within them is.
+// Differences between the pixels of the image within one pixel of the pilot are not noise; the variance within them is.
 TEST(Pilot, KnowsNoiseFromTexture) {
   constexpr int kWide = 192, kRenders = 24, kTileOfImage = kPilotTile * kWide / 64;
   std::string text = Scene("path\" \"integer maxdepth\" [ 1 ] \"string lightsampler\" \"power",

@@ -1,5 +1,5 @@
-// How lights are selected changes the noise of a picture and nothing else; and what is selected from real lights is a
-// distribution that leaves out nothing that contributes.
+// The selection of lights changes the noise of a picture and nothing else; for real lights it is a distribution that
+// leaves out no light that contributes.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Selection,
                            return std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param);
                          });
 
-// Of several samples at a receiver, each light expects its part; all of them together are as many as there are.
+// The expected number of each light's samples at a receiver is its share; together they are all samples.
 TEST_P(Selection, CountsSeveralSamples) {
   const auto& [scene, name] = GetParam();
   const BuiltScene built = Build(scene.text, name, 5);
@@ -464,8 +464,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, ManyLightScenes, testing::ValuesIn(ManyLightCase
   return name;
 });
 
-// What the tree is for. Its variance comes near to that of looking at every light, and its efficiency is far beyond
-// what `power` has; only the latter hangs on the machine, and is twice of what is asked for.
+// The purpose of the tree: its variance comes near to that of evaluating every light, and its efficiency is far above
+// that of `power`. Only the efficiency depends on the machine; it is twice the required one.
 TEST(SelectionNoiseOf, TheTreeIsNearTheLimitAndFarFromPower) {
   const std::string shared = std::string(LAMPYR_SHARED_DATA) + "/peer/lights600.pbrt";
   const struct {

@@ -172,7 +172,7 @@ TEST(TechniqueCounts, NarrowFilmsHaveTheMeanOfAll) {
   for (const char* integrator : {"bdpt", "vcm"}) {
     const bool merges = integrator == std::string("vcm");
     for (const Narrow& film : NarrowFilms()) {
-      // Of so few pixels that a pass may have no light path at all, auto traces one for each (pilot.h).
+      // In an image so small that a pass may have no light path at all, auto traces one for each pixel (pilot.h).
       const bool isTiny = film.width < 8 && film.height < 8;
       RenderOverrides overrides;
       overrides.integrator = integrator;

@@ -161,7 +161,7 @@ class WeightChecker final : public PathObserver {
         isCounted_(counts_.log2LightPaths != 0 || counts_.connecting.Mean() < 1 || counts_.merging.Mean() < 1 ||
                    counts_.continuing.Mean() < 1) {}
 
-  // Of the sample that makes the paths that follow.
+  // Starts the sample to which the following paths belong.
   void StartSample(const Ray& cameraRay, const Point2& film, float time) {
     cameraRay_ = cameraRay;
     start_ = film;
@@ -207,7 +207,7 @@ class WeightChecker final : public PathObserver {
     Observe(path);
   }
 
-  // What the groups weigh, by the power heuristic, and the same of the third powers.
+  // Compares the weights of the groups by the power heuristic, and by third powers.
   void CompareSums(TechniqueSums sums, TechniqueSums expected) {
     double all = 0, allExpected = 0;
     for (size_t i = 0; i < kTechniqueGroups; ++i) {
@@ -284,7 +284,7 @@ class WeightChecker final : public PathObserver {
     constexpr float kSide = 0.01f;  // pixels
     const Vector3d n(vertex.IsInMedium() ? toLens : vertex.bsdf.Ng());
     Vector3d corners[3];
-    // Of a camera with a lens the path's point on it is not known.
+    // The path's point on the lens of a camera is not known.
     const CameraRay center = scene_.camera->GenerateRay(film_, Point2(0.5f), time_);
     if (glm::distance(center.ray.direction, -toLens) > 1e-4f) return 0;
     for (int i = 0; i < 3; ++i) {
@@ -390,7 +390,7 @@ class WeightChecker final : public PathObserver {
 
 namespace {
 
-// What is told of photons, if the proof merges.
+// Data of the photons, if the proof merges.
 struct Photons {
   KeptLightPaths kept;
   PhotonPass gather;

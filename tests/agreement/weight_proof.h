@@ -12,7 +12,7 @@
 
 namespace lampyr::test {
 
-// Of one kind of input: how many were asked for anew, and how many of them are off by more than 1 %.
+// One kind of input: how many were computed again, and how many of them are off by more than 1 %.
 struct InputCheck {
   int asked = 0, wrong = 0;
   // A few are met elsewhere than they were made: on an edge, in a cut-out, at a grazing angle.

@@ -19,7 +19,7 @@ Camera "perspective" "float fov" 20
 WorldBegin
 )";
 
-// What is wrong with the scene, or "no error" when three pixels by three of it have been rendered.
+// The error of the scene, or "no error" after rendering 3 × 3 pixels.
 std::string RenderError(const std::string& world) {
   RenderOverrides overrides;
   overrides.integrator = "path";
@@ -127,7 +127,7 @@ TEST(HostileGraphs, MultiplyToALimit) {
   }
 }
 
-// As many as there are statements may be asked: that is in proportion to the file.
+// As many evaluations as statements are allowed, because they are in proportion to the file.
 TEST(HostileGraphs, OneOfManyIsNoMultiple) {
   std::string text, names;
   for (size_t i = 0; i <= limits::kEvaluations; ++i) {
@@ -232,7 +232,7 @@ TEST(HostileGraphs, ImportsDoNotCopyWhatTheyKeep) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   SceneDescription scene;
   EXPECT_LT(SecondsOf([&] { scene = ReadScene(file, diagnostics); }), 5);
-  // What the imported file has set is not there afterwards, and what it has changed is what it was.
+  // State that the imported file has set is gone afterwards, and state that it has changed is restored.
   EXPECT_EQ(scene.shapes.front().placement.start.Point(Point3d(0.0)), Point3d(0.0));
   ASSERT_EQ(diagnostics.Warnings().size(), 1u);
   EXPECT_THAT(diagnostics.Warnings().front(), HasSubstr("there is no coordinate system \"own\""));

@@ -178,7 +178,7 @@ TEST(HostileScene, AbsurdNumbersAreRefusedOrHarmless) {
   const Value values[] = {
       {"Film \"rgb\" \"integer xresolution\" 65537 WorldBegin", "must be from 1 to 65536"},
       {"Film \"rgb\" \"integer yresolution\" -1 WorldBegin", "must be from 1 to 65536"},
-      // What the picture takes is checked where it is rendered.
+      // The memory of the picture is checked by the render.
       {"Film \"rgb\" \"integer xresolution\" 65536 \"integer yresolution\" 65536 WorldBegin", ""},
       {"Sampler \"sobol\" \"integer pixelsamples\" 2147483647 WorldBegin", "must be from 1 to"},
       {"Sampler \"stratified\" \"integer xsamples\" 32768 \"integer ysamples\" 32769 WorldBegin", "must be from 1 to"},

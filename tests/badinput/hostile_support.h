@@ -1,4 +1,4 @@
-// What the tests of hostile files share: how much memory a refusal takes, and building a scene's text.
+// Support for the tests of hostile files: the memory that a refusal takes, and building a scene's text.
 #pragma once
 
 #include <fstream>
@@ -9,7 +9,7 @@
 
 namespace lampyr {
 
-// Of this process, the most since Restart, MiB.
+// Peak memory of this process since Restart, MiB.
 class PeakMemory {
  public:
   PeakMemory() {
@@ -32,7 +32,7 @@ class PeakMemory {
 
 constexpr uint64_t kMebibyte = uint64_t{1} << 20;
 
-// What building the scene `text` says, named scene.pbrt in `folder`, with `memory` bytes to take.
+// The error of building the scene `text`, named scene.pbrt in `folder`, with a budget of `memory` bytes.
 inline std::string BuildError(const std::string& text, const std::filesystem::path& folder = {},
                               uint64_t memory = 256 * kMebibyte) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);

@@ -81,7 +81,7 @@ TEST(IesErrors, MissingFilesAreReportedWhereTheyAreNamed) {
   EXPECT_NE(missing.find("scene.pbrt:7:9"), std::string::npos) << missing;
   EXPECT_NE(missing.find("no.ies"), std::string::npos) << missing;
   EXPECT_NE(ErrorOf([&] { ReadIes(folder.Write("x/y.ies", "").parent_path().string(), where); }), "no error");
-  // What is wrong inside is reported inside.
+  // An error within the file has its location there.
   const auto broken = folder.Write("broken.ies", "IESNA91\nTILT=NONE\nx");
   const std::string error = ErrorOf([&] { ReadIes(broken.string(), where); });
   EXPECT_NE(error.find("broken.ies:3:1"), std::string::npos) << error;

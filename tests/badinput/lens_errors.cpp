@@ -100,7 +100,7 @@ TEST(LensErrors, DamagedFilesAreReadOrRefused) {
   EXPECT_LT(refused, 19000);
 }
 
-// What is wrong with the camera's statement, and with what it names.
+// Errors of the camera's statement, and of the files that it names.
 TEST(LensErrors, AreReportedForScenes) {
   const TemporaryFolder folder;
   folder.Write("lens.dat", kLens);

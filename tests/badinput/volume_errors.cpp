@@ -21,7 +21,7 @@ std::string SmallFile(nanovdb::io::Codec codec = nanovdb::io::Codec::NONE) {
   return test::VolumeFile({volume}, codec);
 }
 
-// What is wrong with the file, and "no error" if its grid was read.
+// The error of the file, or "no error" if its grid was read.
 std::string VolumeError(const std::string& bytes) {
   return ErrorOf([&] {
     MemoryBudget memory(uint64_t{1} << 28);

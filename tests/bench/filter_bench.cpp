@@ -1,4 +1,4 @@
-// What light filters cost: nanoseconds a sample in batches of 4096, and one by one as integrators ask.
+// Cost of light filters: nanoseconds per sample in batches of 4096, and one by one as in integrators.
 #include <benchmark/benchmark.h>
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What it costs to choose a light, and to know how likely a choice was, among 1 … 10⁶; and to build what chooses.
+// Time to select a light, and to evaluate the probability of a selection, among 1 … 10⁶; and to build the selector.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -61,7 +61,7 @@ void Select(benchmark::State& state) {
 }
 BENCHMARK(Select)->Name("lightTree/select")->RangeMultiplier(10)->Range(1, 1000000);
 
-// Of lights that were chosen, as a path finds them.
+// Probabilities of lights that were selected, as for a path's hits.
 void Probability(benchmark::State& state) {
   const LightTree tree(SmallSquares(static_cast<size_t>(state.range(0))), 2);
   const auto receivers = Receivers();

@@ -39,7 +39,7 @@ PhotonList ListOf(const std::vector<Point3>& positions) {
   return list;
 }
 
-// What a lookup is for: a sum over what photons carry.
+// The work of a lookup: a sum over the photons' flux.
 double Gather(const Photon& photon) {
   return static_cast<double>(photon.flux.r) *
              photon.PreviousReverse(SolidAngleDensity(static_cast<double>(photon.toPrevious.z))).value +

@@ -1,5 +1,5 @@
-// What the ways to select lights are worth: noise and CPU time of whole renders. `efficiency` is 1/(MSE × seconds), of
-// pixels that see no light directly; `gain` is it in units of what `power` has.
+// Comparison of light selections: noise and CPU time of whole renders. `efficiency` is 1/(MSE × seconds), over pixels
+// that see no light directly; `gain` is the efficiency relative to that of `power`.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

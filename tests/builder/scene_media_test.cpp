@@ -80,7 +80,7 @@ TEST(SceneMedia, AreOnTheSidesOfShapes) {
   }
 }
 
-// As without media, rays only pass them, and the scene does not become larger.
+// As without media, rays pass them, and they do not enlarge the scene.
 TEST(SceneMedia, InterfacesBetweenTheSameAreLeftOut) {
   const Scene scene =
       Build(Sphere(1) + kInterface + Sphere(2) + "MediumInterface \"fog\"\n" + Sphere(3) +
@@ -161,7 +161,7 @@ TEST(SceneMedia, AreAroundTheCamera) {
   EXPECT_THAT(found.warnings, ElementsAre(HasSubstr("the camera is in the medium \"fog\", and its rays start there")));
   EXPECT_THAT(Build(kFogBall, kInFog).warnings, IsEmpty());
   EXPECT_EQ(Build("Translate 6 0 0 " + kFogBall).Render().cameraMedium, kVacuum);
-  // What lies around contradicts the file.
+  // The medium around the scene contradicts the file.
   const Scene wrong = Build(kFogBall, "MediumInterface \"\" \"milk\"");
   EXPECT_EQ(wrong.Render().cameraMedium, kFog);
   EXPECT_THAT(wrong.warnings,

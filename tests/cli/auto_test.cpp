@@ -1,4 +1,4 @@
-// What `auto` decides, as a user sees it: the layers of --auto-layers, --stats, `plan`, hints, and `compare`.
+// The decisions of `auto` in the user interface: the layers of --auto-layers, --stats, `plan`, hints, and `compare`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

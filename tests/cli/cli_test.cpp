@@ -114,7 +114,7 @@ TEST_F(Cli, LightGroupsAreLayersOfTheImageAndOfNothingElse) {
       << taken.output;
 }
 
-// Of the command line and of the scene, in the picture, its metadata and the statistics; and what is wrong with them.
+// Expressions from the command line and the scene, in the picture, its metadata and the statistics; and their errors.
 TEST_F(Cli, LayersAreThoseOfTheExpressions) {
   const std::string lights =
       "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.3] \"string name\" \"sky\"\nLightSource \"point\" \"rgb I\" [1 2 "
@@ -173,7 +173,7 @@ TEST_F(Cli, PixelLayersAreInThePicture) {
   EXPECT_EQ(whole.metadata, image.metadata);
 }
 
-// What photons blur, in the picture, in that of parts, and in the report; who merges nothing has none.
+// The bias of merging in the picture, in that of parts, and in the report; integrators that merge nothing have none.
 TEST_F(Cli, TheBiasOfMergingIsInThePicture) {
   const std::string vcm = "render scene.pbrt --quiet --integrator vcm --spp 8 --layer bias --layer \"relative error\"";
   ASSERT_EQ(Run(vcm + " -o o.exr --stats o.json").exitCode, 0);
@@ -255,7 +255,7 @@ TEST_F(Cli, MixesLayers) {
   EXPECT_NE(error("mix in.exr key=1 -o in.exr").find("is the picture that is read"), std::string::npos);
 }
 
-// What a threshold on shadow rays saves and costs is compared like another integrator.
+// A threshold on shadow rays is compared like another integrator, with its cost and its error.
 TEST_F(Cli, ComparesSettingsOfAnIntegrator) {
   const std::string compare = "compare scene.pbrt --spp 2,4 --repeat 2 -o c --integrators ";
   const Outcome compared = Run(compare + "path,path:shadow-threshold=0.05,path:shadow-roulette=0");
@@ -379,7 +379,8 @@ TEST_F(Cli, WritesPicturesOfTechniques) {
   EXPECT_NE(large.output.find("of memory"), std::string::npos) << large.output;
 }
 
-// What the chosen integrator cannot find is said, and which one can; nothing is said where there is nothing to find.
+// The hint names the light that the chosen integrator cannot find, and an integrator that can; without such light there
+// is no hint.
 TEST_F(Cli, HintsAtWhatAnIntegratorCannotFind) {
   const std::string glass = "Material \"dielectric\" \"float eta\" 1.5\nShape \"sphere\" \"float radius\" 0.3\n";
   const auto hintOf = [&](const std::string& scene, const std::string& integrator) {
@@ -438,7 +439,7 @@ TEST_F(Cli, PhotonsOfPbrtThatAreNotGiven) {
   }
 }
 
-// What a newcomer types.
+// Typical first attempts of a new user.
 TEST_F(Cli, GuessesWhatIsMeant) {
   const auto wrong = [&](const std::string& command, const std::string& what) {
     const Outcome outcome = Run(command);
@@ -689,8 +690,8 @@ TEST_F(Cli, EmptySceneIsBlackAndSaysSo) {
   for (const float value : image.data) EXPECT_EQ(value, 0.0f);
 }
 
-// Of a picture that all of its samples were dropped from nothing is known, whoever finds the light; the message names
-// what has spoilt them.
+// If all samples of a picture were dropped, nothing is known of it, whichever integrator finds the light; the message
+// names the cause.
 TEST_F(Cli, APictureWithoutItsSamplesIsAnErrorThatNamesTheCause) {
   const std::string begin =
       "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nLookAt 0 1 3  0 0 0  0 1 0\n"
@@ -869,7 +870,7 @@ TEST_F(Cli, InterfacesEmitNothing) {
   for (const float value : ReadImage(folder_ / "out.exr").data) EXPECT_EQ(value, 0.0f);
 }
 
-// As in pbrt-v4: an Attribute is for all that follow, and some of them have no such parameter.
+// As in pbrt-v4: an Attribute applies to all following statements, some of which have no such parameter.
 TEST_F(Cli, AttributesOfLightsMayBeForOthers) {
   Write("lights.pbrt", std::string(kScene) +
                            "Attribute \"light\" \"float illuminance\" 2 \"float power\" 3\n"

@@ -1,5 +1,5 @@
-// What must not hurt: numbers that are none, memory that runs out, outputs that are links or inputs, and messages that
-// name another cause.
+// Situations that must do no harm: numbers that are not finite, lack of memory, outputs that are links or inputs, and
+// messages that name another cause.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -28,7 +28,7 @@ class Harmless : public testing::Test {
   Outcome Run(const std::string& arguments, const std::string& before = "") {
     return RunLampyr(folder_.Path(), arguments, before);
   }
-  // What is said of a scene with this world, which is rendered in spite of it.
+  // The warning for a scene with this world, which is rendered nevertheless.
   std::string WarningOf(const std::string& world) {
     Write("odd.pbrt", SceneWith(world));
     const Outcome outcome = Run("render odd.pbrt -o odd.exr --quiet --spp 1");
@@ -158,7 +158,7 @@ TEST_F(Harmless, LinksStayLinks) {
   EXPECT_TRUE(fs::is_symlink(folder_ / "out.exr") && fs::is_symlink(folder_ / "chain.exr"));
   EXPECT_NE(Read("store/kept.exr"), first);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "store"), {}), 1) << "something was left behind";
-  // What is written meanwhile lies beside the file, not beside the link: a rename stays within a file system.
+  // The temporary file is beside the target, not beside the link: a rename must stay within a file system.
   fs::create_symlink("nowhere/kept.exr", folder_ / "broken.exr");
   const Outcome broken = Run("render scene.pbrt -o broken.exr --quiet");
   EXPECT_EQ(broken.exitCode, 2);

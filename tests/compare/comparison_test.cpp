@@ -29,7 +29,7 @@ AreaLightSource "diffuse" "rgb L" [30 28 26]
 Translate 0.8 2 0.2 Shape "sphere" "float radius" 0.2
 AttributeEnd
 )";
-// Of what the point light sends through the ball, a path from the camera finds nothing.
+// No path from the camera finds the light that the point light sends through the ball.
 const std::string kCaustic = R"(AttributeBegin
 Material "dielectric" "float eta" 1.5
 Translate 0 0.6 0 Shape "sphere" "float radius" 0.5

@@ -82,7 +82,7 @@ TEST(Estimate, SignificanceIsRareWhereThereIsNothing) {
   EXPECT_FALSE(MeanOf(std::vector<double>{1, 1.01, 0.99, 1}, 1).significant);  // known no better than by 1
 }
 
-// Of variances, which are no means.
+// The jackknife for variances, which are no means.
 TEST(Estimate, IntervalOfTheJackknifeCoversAVariance) {
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> uniform(0, 1);

@@ -31,14 +31,14 @@ class Desk : public testing::Test {
     EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
     return ReadImage(folder_ / "rendered.exr");
   }
-  // What the desk has now, as it keeps it.
+  // The current state of the desk, written by *Keep*.
   Json Kept(const DeskProcess& desk, const Json& factors) {
     desk.WaitUntilDone();
     return desk.PostJson("keep", {{"factors", factors}});
   }
   Json Kept(const DeskProcess& desk) { return Kept(desk, desk.Neutral()); }
 
-  // That the picture and its variances are the same, byte by byte.
+  // Expects the picture and its variances to be equal byte by byte.
   static void ExpectSamePicture(const Image& a, const Image& b) {
     const std::vector<std::string> channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
     const Image pictureA = ChannelsOf(a, channels), pictureB = ChannelsOf(b, channels);
@@ -271,7 +271,7 @@ TEST_F(Desk, FadersAreSetIntoTheLights) {
             ReadBytes(kept.at("scenes").at(0).get<std::string>()));
   const Image rendered = Rendered("scene.desk.pbrt");
   ExpectSamePicture(ReadImage(kept.at("picture").get<std::string>()), rendered);
-  // What was mixed is the same up to noise.
+  // The mixed picture is the same up to noise.
   double sumMixed = 0, sumRendered = 0;
   for (int y = 0; y < 30; ++y) {
     for (int x = 0; x < 48; ++x) {

@@ -1,4 +1,4 @@
-// How the baselines render.
+// Renders of the baselines.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@ inline BuiltScene BuildFor(const BaselineScene& scene, const std::string& integr
   RenderOverrides overrides;
   overrides.integrator = integrator;
   if (integrator == "vcm" || integrator == "sppm") {
-    // So few and so near that the blur is below the noise.
+    // So small that the blur is below the noise.
     overrides.values["radius"] = 0.005;
     overrides.values["photons"] = 6000;
   }

@@ -72,7 +72,7 @@ std::vector<double> Tabulate(const Domain& domain, const Density& density) {
   return cells;
 }
 
-// Whether `draws` more are refuted.
+// The χ² test of a histogram of sampled directions against the density.
 struct Histogram {
   Domain domain;
   std::vector<double> pdf;

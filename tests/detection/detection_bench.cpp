@@ -57,7 +57,7 @@ void RunLights(const std::string& name, const std::vector<std::string>& only, co
   const auto tiles = [&](const LightFault* fault) {
     return SceneOf(TileScene(subject, "planted"), scratch, PlantedType(name, fault));
   };
-  // Of the sound light: the mean of the furnace, and how many draws the χ² test takes before it rejects it.
+  // For the correct light: the mean of the furnace, and the number of draws at which the χ² test rejects it.
   const double truth = TrueMean(furnace(nullptr));
   const Finding directions = FindByChiSquared(tiles(nullptr), ~uint64_t{0}, 2 * kLeastSeconds, Queries);
   const uint64_t draws = directions.found ? directions.draws / 4 : directions.draws;

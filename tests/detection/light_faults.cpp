@@ -27,7 +27,7 @@ struct Edge {
   float cosine, distance;  // at the light
 };
 
-// What samples and evaluations report alike.
+// Values that samples and evaluations both report.
 using OnEdge = std::function<void(const LightCall&, const Edge&, Color& diffuse, Color& specular, PdfSolidAngle& pdf)>;
 LightHooks OfEdges(const OnEdge& change) {
   LightHooks hooks;
@@ -102,7 +102,7 @@ Planting Energy(float energy) {
   return Hooked(hooks);
 }
 
-// Of the light: half the diagonal of its box.
+// Size of the light: half the diagonal of its box.
 float SizeOf(const LightCall& call) {
   const auto bounds = call.sound.GetEmissionBounds(call.context);
   return bounds ? 0.5f * glm::length(bounds->box.Diagonal()) : 1.0f;
@@ -128,7 +128,7 @@ std::vector<LightFault> MakeLightFaults() {
   };
   const auto isPlain = [](const LightCall& call) { return !call.context.bidirectional; };
 
-  // What only some integrators ask for.
+  // Faults in values that only some integrators use.
   add("half-unless-bidirectional", "rect",
       RadianceTimes([=](const LightCall& c, const Edge&) { return isPlain(c) ? 0.5f : 1.0f; }),
       "half the radiance where densities of emission are not asked for");

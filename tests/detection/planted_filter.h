@@ -72,7 +72,7 @@ class CountedFilter final : public ForwardingFilter {
   }
 };
 
-// What is wrong: a filter made from a sound one, or another reading of the parameters.
+// The fault: a filter made from a correct one, or another reading of the parameters.
 struct FilterPlanting {
   std::function<std::shared_ptr<const LightFilter>(std::shared_ptr<const LightFilter>)> filter;
   std::string ignored;  // a parameter that the filter does not look at; "": none

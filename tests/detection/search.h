@@ -1,5 +1,5 @@
-// What a method makes of one fault, and how methods are run: with more and more samples, until they find the fault or
-// have spent their time.
+// The result of a method for one fault, and the runs of methods: with more and more samples, until they find the fault
+// or have used up their time.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Finding {
   std::string property;  // what failed
 };
 
-// What each baseline gets: the time that ours took, and never less than this.
+// Least time of each baseline; otherwise it gets the time that our proofs took.
 inline constexpr double kLeastSeconds = 1;
 
 inline double CpuSeconds() {

@@ -81,7 +81,7 @@ std::string WorstProperty(const std::vector<SuiteResult>& results) {
     if (!result.passed) failed.push_back(result);
   }
   if (failed.empty()) return "";
-  // Of several the one that fails in most cases names the fault best.
+  // If several properties fail, the fault is attributed to the one that fails in most cases.
   const LightVerdict* most = nullptr;
   const std::vector<LightVerdict> verdicts = SummariseByProperty(failed);
   for (const LightVerdict& verdict : verdicts) {

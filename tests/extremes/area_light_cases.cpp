@@ -18,7 +18,8 @@ struct RigSurface {
   std::function<double(const Point3d& P, double height, double size)> irradiance;
 };
 
-// Of a parallel rectangle, facing P: Lambert's formula corner by corner, and by quadrature where that cancels.
+// Irradiance by a parallel rectangle that faces P: Lambert's formula corner by corner, and quadrature where that
+// cancels.
 double ParallelRectangle(const Point3d& P, double height, double width, double depth) {
   const double x0 = -0.5 * width - P.x, z0 = -0.5 * depth - P.z;
   if (std::max(width, depth) < 0.3 * height)
@@ -30,20 +31,20 @@ double ParallelRectangle(const Point3d& P, double height, double width, double d
   return corner(x0 + width, z0 + depth) - corner(x0, z0 + depth) - corner(x0 + width, z0) + corner(x0, z0);
 }
 
-// Of a parallel disk: π/2 (1 - A / √(A² + B²)) with A = h² + ρ² - a², B = 2ha, so that nothing cancels.
+// Irradiance by a parallel disk: π/2 (1 - A / √(A² + B²)) with A = h² + ρ² - a², B = 2ha, which avoids cancellation.
 double ParallelDisk(const Point3d& P, double height, double radius) {
   const double A = height * height + P.x * P.x + P.z * P.z - radius * radius, B = 2 * height * radius;
   const double Q = std::hypot(A, B);
   return M_PI / 2 * (A > 0 ? B * B / (Q * (Q + A)) : (Q - A) / Q);
 }
 
-// Of a sphere that is all above the horizon.
+// Irradiance by a sphere that is all above the horizon.
 double Sphere(const Point3d& P, double height, double radius) {
   const double d2 = height * height + P.x * P.x + P.z * P.z;
   return M_PI * radius * radius * height / (d2 * std::sqrt(d2));
 }
 
-// Of the outer side of a cylinder along x, by quadrature.
+// Irradiance by the outer side of a cylinder along x, by quadrature.
 double Cylinder(const Point3d& P, double height, double radius, double length) {
   constexpr int n = 48, m = 96;
   double sum = 0;
@@ -173,7 +174,7 @@ void AddSizes(const RigSurface& light, std::vector<ExtremeCase>& cases) {
   }
 }
 
-// So near that it fills the sky, or just does not touch.
+// Lights so near that they fill the sky, or almost touch.
 void AddTouching(std::vector<ExtremeCase>& cases) {
   for (const RigSurface& light : RigSurfaces()) {
     const bool isFlat =

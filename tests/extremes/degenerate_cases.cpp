@@ -116,7 +116,7 @@ void AddContrasts(std::vector<ExtremeCase>& cases) {
   };
   cases.push_back(
       {"a point of 1e30 and one of 1e-30", rig.Scene(point(1e30, 0) + point(1e-30, 1)), 1e30 * lit(0), kFromCamera});
-  // What is hidden is all that is bright.
+  // All bright parts are hidden.
   cases.push_back(
       {"a point of 1e30 below the floor, and one of 1 above it",
        rig.Scene(point(1, 0) + "LightSource \"point\" \"rgb I\" [3e30 3e30 3e30] \"point3 from\" [0 -1 0]\n"), lit(0),

@@ -44,8 +44,7 @@ std::vector<ExtremeCase> WavelengthCases();
 std::vector<ExtremeCase> CameraCases();
 std::vector<ExtremeCase> DegenerateCases();
 
-// Who finds light that comes straight from a light: all, all but pure light tracing, and who goes by way of light
-// paths.
+// Integrators that find light directly from a light: all, all but pure light tracing, and those that trace light paths.
 inline const std::vector<std::string> kAll = {"path", "light", "bdpt", "sppm", "vcm"};
 inline const std::vector<std::string> kFromCamera = {"path", "bdpt", "sppm", "vcm"};
 

@@ -180,7 +180,7 @@ void AddPortals(std::vector<ExtremeCase>& cases) {
   near.half = 0.1;
   near.eye = 5e-6;
   cases.push_back({"portal, 1e-5 above the floor", near.Scene(Portal(1e-5, 1, 1)), Lit(3 * M_PI), kFromCamera});
-  // It stands on the floor and shines along it (-x).
+  // The portal stands on the floor and shines along it (-x).
   for (const double high : {1.0, 1e-3, 1e-6}) {
     const FloorRig rig = RigOf(1);
     cases.push_back({"portal, " + Short(high) + " high, standing on the floor",

@@ -84,7 +84,7 @@ Replicas RenderBy(BuiltScene& built, const std::string& integrator, int samples)
   return replicas;
 }
 
-// How the changed pictures differ from the others within a rectangle: Student's t of the mean difference.
+// Difference of the changed pictures from the others within a rectangle: Student's t of the mean difference.
 struct Difference {
   double mean = 0, standardError = 0, of = 0;  // `of`: the mean of the unchanged ones
 };

@@ -11,7 +11,7 @@ namespace lampyr::test {
 
 namespace {
 
-// Of this process: tests run beside each other. Removed when it ends.
+// A folder of this process, because tests run in parallel. Removed when the process ends.
 struct Folder {
   Folder() : path(std::filesystem::temp_directory_path() / ("lampyr-extremes-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(path);

@@ -14,7 +14,7 @@ std::string Gray(double value) {
 
 const std::vector<std::string> kThroughSmooth = {"path", "bdpt", "sppm", "vcm"};
 
-// What is seen from straight above of a mirror under an even sky.
+// Radiance of a mirror under a uniform sky, seen from straight above.
 void AddMirrors(std::vector<ExtremeCase>& cases) {
   for (const char* remap : {"", " \"bool remaproughness\" false"}) {
     for (const double roughness : {0.0, 1e-9, 1e-5, 1.1e-3, 1e-2}) {
@@ -74,7 +74,7 @@ void AddBalls(std::vector<ExtremeCase>& cases) {
     ExtremeCase rough{"ball of η 1.5 and roughness " + Short(roughness),
                       ball("\"dielectric\" \"float eta\" 1.5 \"float roughness\" " + Number(roughness), 1), 1,
                       kThroughSmooth, 32};
-    // What microfacets shadow of each other is lost: at the rim alone.
+    // Light that microfacets shadow is lost, which matters at the rim alone.
     if (roughness > 1e-4) rough.bias = 5e-3;
     // Few of the ball's directions are wide enough for photons, and few photons come to each.
     rough.overrides.values["radius"] = 0.1;

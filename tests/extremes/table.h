@@ -13,8 +13,8 @@ std::string SectionOf(const ExtremeGroup& group, const std::vector<Row>& rows);
 // The page above and its sections.
 std::string PageOf(const std::vector<std::string>& sections);
 
-// What must be the same in the documentation and in what was measured now: of each row of the section with that title,
-// its case, the expected value and the verdict; not the noise.
+// The parts of the page that must equal the measurement: for each row of the section with that title, its case, the
+// expected value and the verdict; not the noise.
 std::vector<std::string> ClaimsOf(const std::string& page, const std::string& title);
 
 }  // namespace lampyr::test

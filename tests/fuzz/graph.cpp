@@ -50,7 +50,7 @@ class GraphScene {
 
   void AddStatement(unsigned what, unsigned a, unsigned b) {
     const char* modes[] = {"multiply", "max", "min", "screen"};
-    // What a statement names is what there was before it.
+    // A statement names only objects that precede it.
     const std::string filters = Both(Filters, a, b), materials = Both(Materials, a, b), object = Old(Objects, a);
     const std::string floatA = Old(FloatTextures, a), floatB = Old(FloatTextures, b);
     const std::string colorA = Old(SpectrumTextures, a), colorB = Old(SpectrumTextures, b);

@@ -1,4 +1,4 @@
-// What the targets share.
+// Code that the targets share.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ inline bool IsGzip(std::string_view bytes) {
 // Where scenes under test are said to be: beside a few files that they may name.
 std::filesystem::path SceneName();
 
-// Whether there was no Error.
+// True if `read` throws no Error.
 template <class Read>
 bool AcceptErrors(const Read& read) {
   try {

@@ -1,6 +1,6 @@
-// What is fuzzed. Each target takes the bytes of one input: an Error, or an answer, is right, and the target says
-// whether it was an answer; all else that comes of it (a crash, a sanitizer's report, another exception, a wait of
-// seconds, memory out of proportion) is a defect.
+// The fuzz targets. Each target takes the bytes of one input: an Error, or an answer, is correct, and the target
+// returns true for an answer; any other outcome (a crash, a sanitizer's report, another exception, a wait of seconds,
+// memory out of proportion) is a defect.
 //
 // The fuzzer (fuzzer.cpp) and the replay of the corpus (tests/badinput/corpus.cpp) call the same functions.
 #pragma once

@@ -148,7 +148,7 @@ TEST(AreaLight, OpacityZeroShinesAndIsNotThere) {
                    irradiance, "behind a surface that is not there");
 }
 
-// What a camera at the origin sees of a light in front of an environment of radiance 0.25.
+// Radiance of a light at a camera at the origin, in front of an environment of radiance 0.25.
 double SeenRadiance(const std::string& light) {
   const std::string head = R"(Film "rgb" "integer xresolution" 4 "integer yresolution" 4
 Camera "perspective" "float fov" 5

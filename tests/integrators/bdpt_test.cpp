@@ -1,4 +1,4 @@
-// What bidirectional path tracing decides by itself: which techniques there are, and where its pictures must not flare.
+// Decisions of bidirectional path tracing: its techniques, and the places where its pictures must not flare.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -124,8 +124,8 @@ TEST(EmissionGuide, LightsAreChosenAsOftenAsItSays) {
   EXPECT_EQ(guide.Share(2), 0);
 }
 
-// What is sent without a guide is sent with one, never less often than its unguided part; more often where it was of
-// use.
+// All photons that are sent without a guide are sent with one, at least as often as by its unguided part, and more
+// often where they contribute.
 TEST(EmissionGuide, GainsWherePhotonsWereOfUse) {
   const BuiltScene built = Build(kSky);
   const auto guide = AimAt(*built.scene.lighting, Point3(1, 0, 0), 0.5f);

@@ -1,4 +1,4 @@
-// What must not change the picture: threads, passes, crops, the scene's scale and place.
+// Changes that must not affect the picture: threads, passes, crops, the scene's scale and place.
 #include <gtest/gtest.h>
 
 #include "support/render_scene.h"

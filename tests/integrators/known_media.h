@@ -110,7 +110,7 @@ inline void ExpectKnown(const std::string& what, const Replicas& replicas, const
   std::printf("  %.1f s\n", static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
 }
 
-// How many times the samples of path tracing an integrator takes.
+// Sample counts of the integrators, as multiples of that of path tracing.
 struct Effort {
   double path = 1, light = 8, bdpt = 1, vcm = 1, sppm = 1;
 

@@ -26,8 +26,8 @@ class MediaAnalytic : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Of, MediaAnalytic, testing::Values("path", "light", "bdpt", "vcm", "sppm", "auto"),
                          NameOfIntegrator);
 
-// Of a point light of unit intensity at the distance D from the ray, with the foot δ, in the medium from t0 to t1. The
-// camera is outside.
+// Single scattering of a point light of unit intensity at the distance D from the ray, with the foot δ, in the medium
+// from t0 to t1. The camera is outside.
 double SingleScattering(double scattering, double extinction, double D, double foot, double t0, double t1) {
   const auto inner = [&](double x) { return std::exp(-extinction * D * std::tan(x)); };
   const auto bound = [&](double t) { return M_PI / 4 + std::atan((t - foot) / D) / 2; };

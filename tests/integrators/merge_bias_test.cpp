@@ -97,7 +97,7 @@ TEST(MergeBias, OfAStepHasItsSignAndSize) {
   EXPECT_LT(std::sqrt(estimates / truths), 1.5);
 }
 
-// Of a kernel on a line of half the width r the bias of E = x² is r² / 3.
+// For a kernel on a line of half the width r, the bias of E = x² is r² / 3.
 TEST(MergeBias, OnALineIsThatOfTheSecondMoment) {
   constexpr int kSteps = 100000;
   double estimate = 0;

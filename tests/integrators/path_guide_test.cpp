@@ -169,7 +169,7 @@ TEST(GuidedScattering, SamplesFollowTheDensityInBothModes) {
           },
           [&](const Vector3& local) {
             const BsdfEvaluation f = vertex.Evaluate(frame.ToWorld(local), mode);
-            // What the guide sends where nothing is scattered ends the path.
+            // A guided direction in which nothing is scattered ends the path.
             return f.Sum().IsBlack() ? 0.0 : static_cast<double>(f.pdfForward.value);
           },
           40000);
@@ -425,7 +425,7 @@ struct Learned {
   size_t regions = 0;
 };
 
-// What is learned of a scene by path tracing, with so many samples.
+// Learns a scene by path tracing, with this many samples.
 Learned Learn(const std::string& text, uint32_t samples) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const BuiltScene built = BuildScene(ParseScene(text, "test.pbrt", diagnostics), {}, true, diagnostics);

@@ -1,4 +1,4 @@
-// What the path integrator decides by itself: interfaces, several lights at infinity, the cosine of the shading normal,
+// Properties of the path integrator alone: interfaces, several lights at infinity, the cosine of the shading normal,
 // roulette in glass, rays that leave their surface.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// What photons blur grows sharp: the error of sppm and vcm falls as theory says, to the picture of who blurs nothing.
+// Convergence of merged photons: the error of sppm and vcm falls as in theory, and to the picture of unbiased
+// integrators.
 #include <gtest/gtest.h>
 
 #include <cmath>

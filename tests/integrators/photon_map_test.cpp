@@ -242,7 +242,8 @@ TEST(PhotonMap, KeepsWhatAPhotonCarries) {
   EXPECT_TRUE(map.PathOf(map[0]).empty()) << "densities were not kept";
 }
 
-// Of its own path, from the light on, up to the photon: also where a path left none, or not at each vertex.
+// Densities of a photon's own path, from the light to the photon: also if a path stored no photon, or not at each
+// vertex.
 TEST(PhotonMap, KeepsTheDensitiesOfPaths) {
   std::vector<PhotonList> lists(3);
   PathVertex vertex;

@@ -31,7 +31,7 @@ Shape "trianglemesh" "point3 P" [-9 0 -9 -9 0 9 9 0 9 9 0 -9] "integer indices" 
   return {mean(0), mean(1), mean(2)};
 }
 
-// What a point of intensity I at height 2 above the origin makes of the floor at (x, z).
+// Radiance of the floor at (x, z) by a point of intensity I at height 2 above the origin.
 Color FromHeightTwo(double x, double z, const Color& intensity) {
   const double squared = 4 + x * x + z * z;
   return intensity * static_cast<float>(0.5 / M_PI * (2 / std::sqrt(squared)) / squared);

@@ -60,7 +60,7 @@ TEST(ShadowRoulette, TracesFewerRaysAndAddsLittleNoise) {
   }
 }
 
-// What a threshold costs is darkness, and never more than itself for each ray that was left out.
+// The bias of a threshold is negative, and at most the threshold for each omitted ray.
 TEST(ShadowRoulette, AThresholdIsABiasThatHasABound) {
   for (const char* integrator : {"path", "bdpt"}) {
     const Rendered all = RenderWith(integrator, 0, 0);

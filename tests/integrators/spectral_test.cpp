@@ -288,7 +288,7 @@ TEST(Spectral, WhiteStaysWhite) {
       EXPECT_LT(std::abs(mean), std::max(1e-3, 4 * error)) << integrator << " " << i;
       EXPECT_LT(error, std::string(integrator) == "light" ? 4e-3 : 5e-4) << integrator << ": too noisy";
     }
-    // What photons are merged for, and light tracing, are matters of the matrix, where noise is known.
+    // Merging and light tracing are tested in the matrix, where the noise is known.
     if (std::string(integrator) != "path" && std::string(integrator) != "bdpt") continue;
     RenderOverrides overrides;
     overrides.integrator = integrator;

@@ -1,4 +1,4 @@
-// What shadow rays, scattered rays and photons make of cut-outs and thin glass: the same, layer by layer.
+// Transmission of cut-outs and thin glass is the same for shadow rays, scattered rays and photons, layer by layer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,7 +119,7 @@ TEST(Transmission, ThroughBothSidesOfABall) {
               1e-4);
 }
 
-// As the light, so what a camera sees through it: each layer colours the background and the lamp.
+// The same for camera rays: each layer colours the background and the lamp.
 TEST(Transmission, OfWhatTheCameraSees) {
   for (const char* integrator : {"path", "bdpt", "sppm", "vcm"}) {
     for (const char* light : {"LightSource \"infinite\" \"rgb L\" [1 1 1]\n",

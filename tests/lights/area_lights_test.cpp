@@ -32,7 +32,8 @@ double Irradiance(const test::BuiltLight& built, const Point3& P, const Vector3d
   return sum / (side * side);
 }
 
-// Of a polygon of radiance 1 that is all above the horizon, by Lambert's formula; small edges by their sines.
+// Irradiance by a polygon of radiance 1 that is all above the horizon, by Lambert's formula; small edges by their
+// sines.
 double LambertPolygon(const std::vector<Point3d>& corners, const Point3d& P, const Vector3d& n) {
   double sum = 0;
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -272,7 +273,7 @@ TEST(AreaLights, FocusIsAPowerOfTheCosine) {
   EXPECT_NEAR(disk->light->GetPowerEstimate(disk->context).r, 2 * kPiDouble / 5 * kPiDouble / 4, 2e-3);
 }
 
-// What a ray finds is the surface that is sampled: position, normal, uv, and the other way round.
+// Rays hit the surface that is sampled, with the same position, normal and uv, and the other way round.
 TEST(AreaLights, SurfacesAreTheSampledOnes) {
   for (const char* type : {"rect", "disk", "sphere", "cylinder"}) {
     const auto built = Build(type, "");

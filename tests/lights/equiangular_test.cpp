@@ -193,7 +193,7 @@ TEST(Equiangular, HasNoDensityOutsideOfTheRange) {
   }
 }
 
-// Of an isotropic point light without extinction, single scattering along the ray is exact by one sample.
+// For an isotropic point light without extinction, one sample gives the exact single scattering along the ray.
 TEST(Equiangular, MakesInverseSquaresConstant) {
   const Setting s = kSettings[0];
   const EquiangularDistance sampler = Make(s);

@@ -36,7 +36,7 @@ struct Filtered {
   Color diffuse, specular;
 };
 
-// What a filter makes of white light that reaches `receiver` from `light`.
+// White light from `light` at `receiver`, filtered.
 Filtered Filter(const LightFilter& filter, const Point3& receiver, const Point3& light,
                 const uint8_t* enabled = nullptr) {
   Filtered result{Color(1.0f), Color(1.0f)};
@@ -69,7 +69,7 @@ TEST(BarnFilter, IsAnOpeningWithDoors) {
   EXPECT_EQ(Factor(*barn, {0, 1.9f, -4}), 0);
   EXPECT_EQ(Factor(*barn, {0, 0, 4}), 0);      // behind the light
   EXPECT_EQ(Factor(*barn, {0, 0, -1.9f}), 0);  // in front of the opening
-  // It is the ray that goes through: from elsewhere on the light, at another place.
+  // The ray itself passes the opening: from another point on the light, at another position.
   EXPECT_EQ(Factor(*barn, {1.9f, 0, -4}, {1.9f, 0, 0}), 0);
   EXPECT_EQ(Factor(*barn, {3.9f, 0, -4}, {-1.9f, 0, 0}), 1);
   // From infinity.
@@ -157,7 +157,7 @@ TEST(BeamImages, LieUprightInTheBeam) {
     const auto tiled = Make(type, file + "\"bool tile\" true \"rgb tint\" [2 1 1]");
     EXPECT_EQ(Filter(*tiled, {7.5f, 10.5f, -2}, Point3(0.0f)).diffuse, Color(2, 0, 0));
     EXPECT_EQ(Filter(*tiled, {-7.5f, 10.5f, -2}, Point3(0.0f)).diffuse, Color(0, 1, 0));
-    // So wide a blur that nothing is left of the pattern; and the fill comes in.
+    // The blur is so wide that nothing is left of the pattern, and the fill contributes.
     const auto blurred = Make(type, file + "\"bool tile\" true \"float blur\" 1");
     EXPECT_NEAR(Filter(*blurred, {0.3f, 0.4f, -2}, Point3(0.0f)).diffuse.r, 0.5f, 0.01f);
     const auto faded = Make(type, file + "\"float blur\" 0.5");
@@ -177,7 +177,7 @@ TEST(BeamImages, LieUprightInTheBeam) {
                 4e-3f)
         << x;
   }
-  // Of the two, the gobo moves with the place on the light.
+  // Of the two, only the gobo's image moves with the point on the light.
   const auto gobo = Make("gobo", file), cookie = Make("cookie", file);
   EXPECT_EQ(Filter(*gobo, {0.25f, 0.25f, -2}, {0.25f, 0.25f, 0}).diffuse, Color(0, 1, 0));
   EXPECT_EQ(Filter(*gobo, {0.25f, 0.25f, -2}, {-0.75f, 0.25f, 0}).diffuse, Color(1, 0, 0));

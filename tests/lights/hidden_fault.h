@@ -18,14 +18,14 @@ enum class HiddenFault {
   // Where densities of emission are not wanted: half the radiance, a density that is a tenth too high.
   HalfWithoutBidirectional,
   PdfOffWithoutBidirectional,
-  // Of a light that is its own surface: it says that it has two parts.
+  // A light that is its own surface claims two patches.
   TwoPatches,
   ShinesFromFarAway,
   NoPositionError,
   HugePositionError,
   NoEnergy,
   TinyEnergy,
-  // Of the time alone, the transform being the same.
+  // The radiance depends on the time itself, with the same transform.
   RadianceOfTime,
   PdfOfTime,
   EmitPdfOfTime,
@@ -93,10 +93,10 @@ class HiddenFaultLight final : public ForwardingLight {
  private:
   bool Is(HiddenFault fault) const { return fault_ == fault; }
 
-  // What samples and evaluations report of one edge. `cosine`: at the light.
+  // Values that samples and evaluations report for one edge. `cosine`: at the light.
   template <class Result>
   void Spoil(const LightContext& context, const Vector3& toLight, float cosine, float distance, Result& result) const;
-  // What all three report of a direction away from the light.
+  // Density that all three methods report for a direction away from the light.
   PdfSolidAngle SpoiltDirection(PdfSolidAngle density, const Vector3& outward) const {
     if (Is(HiddenFault::FineRipple)) return density * (1 + 0.05f * std::sin(40 * outward.x) * std::cos(25 * outward.y));
     if (Is(HiddenFault::Ripple)) return density * (1 + 0.05f * std::sin(9 * outward.x) * std::cos(7 * outward.y));

@@ -189,7 +189,7 @@ TEST(InfiniteTint, OnlySpecularLightIsStillSampled) {
 
 // --- images
 
-// What each axis sees, nudged off the borders between texels.
+// Radiance along each axis, moved off the borders between texels.
 std::vector<float> SixAxes(const test::BuiltLight& built) {
   const Vector3 nudge(0.013f, 0.017f, 0.011f);
   std::vector<float> seen;

@@ -1,4 +1,4 @@
-// What is learned of clusters: from what was recorded, from nothing else, and only when it is frozen.
+// Learning of clusters: from recorded samples, from nothing else, and only when it is frozen.
 #include "lights/selection/light_learning.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Receiver At(const Point3& position, const Normal3& normal) {
   return receiver;
 }
 
-// Of a child whose parent has this factor.
+// Factor of a child whose parent has the factor `parent`.
 double FactorOf(const LightLearning& learning, uint32_t region, uint32_t node, int child, double parent = 1) {
   const LightLearning::Row& row = learning.RowOf(region, node);
   return std::sqrt(static_cast<double>(row.known[child]) +

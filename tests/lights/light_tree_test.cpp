@@ -42,7 +42,7 @@ EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double
   return tree.Select(receiver, Look(tree, receiver), u, defensive);
 }
 
-// As the tree keeps it.
+// The lobe in the tree's compressed form.
 ClusterLobe KeptLobeOf(const ClusterBounds& emitter) {
   LobeBlock block;
   block.Set(3, LobeOf(emitter));
@@ -229,7 +229,7 @@ std::vector<ClusterBounds> LikeEmitters(Kind kind, size_t count, Rng& rng) {
   return emitters;
 }
 
-// Of Poisson's counts, as many as there are: their squared differences in units of their variance.
+// Compares Poisson counts: their squared differences in units of their variance.
 void ExpectCounts(const std::vector<int>& counts, int draws, const std::vector<double>& probabilities) {
   double sum = 0, cells = 0, fewExpected = 0, fewCounted = 0;
   const auto add = [&](double counted, double expected) {
@@ -306,7 +306,7 @@ TEST(LightTree, ATinyFarClusterHasProbabilitiesThatSumToOne) {
   }
 }
 
-// What a sample is stretched to serves the light's own sampling: it is even over [0,1) whatever was chosen.
+// The rescaled random number is used by the light's own sampling: it is uniform over [0,1) for every selected light.
 TEST(LightTree, WhatIsLeftOfTheRandomNumberIsEven) {
   Rng rng(14);
   const LightTree tree(LikeEmitters(Kind::Points, 3000, rng), 1);

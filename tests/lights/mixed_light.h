@@ -58,7 +58,7 @@ class MixedLight final : public ForwardingLight {
   bool Is(Part part) const { return part_ == part; }
   const Light& Of(Part part) const { return Is(part) || Is(Part::Everything) ? *other_ : Sound(); }
 
-  // What `light` says of the direction of emission: points by what they send there, others by what is found there.
+  // Result of `light` for the direction of emission: from the intensity of points, from hits of other lights.
   template <class Result>
   static bool Ask(const Light& light, const LightContext& context, const LightHit& hit, const Point3& P,
                   Result& result);

@@ -100,7 +100,7 @@ TEST(Portal, IsARectangleOfTheSkysRadiance) {
     const Window window = PlacedWindow(2, 1.5, placement);
     for (const Point3d& local : kReceivers) {
       const Point3d P(Point3(placement.Point(local)));
-      // As it is faced, so that no part is cut off.
+      // The normal of a receiver that faces the portal, so that no part is cut off.
       const Vector3d n = glm::normalize(window.At(0.5, 0.5) - P);
       const double expected =
           Integrate(window, P, 400, [&](const Vector3d& w) { return 5 * std::max(glm::dot(w, n), 0.0); });
@@ -493,7 +493,7 @@ TEST_F(PortalImages, WhatIsNoRectangleIsSaid) {
   EXPECT_NE(error("0 0 0  1 1 0  1 0 0  0 1 0").find("not a rectangle"), std::string::npos);
   EXPECT_NE(error("0 0 0  1 0 0  1 1 0.5  0 1 0").find("not a rectangle"), std::string::npos);
   EXPECT_NE(error("0 0 0  0 0 0  1 1 0  0 1 0").find("same point"), std::string::npos);
-  // As pbrt-v4 takes it: within a thousandth.
+  // The tolerance of pbrt-v4: a thousandth.
   EXPECT_EQ(error("0 0 0  1 0 0  1.0004 1 0  0 1 0"), "");
 }
 

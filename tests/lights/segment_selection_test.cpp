@@ -190,8 +190,8 @@ TEST_P(SegmentSelection, SumsUpWhatReachesTheSegment) {
 INSTANTIATE_TEST_SUITE_P(Selections, SegmentSelection, ::testing::ValuesIn(kSelections),
                          [](const auto& info) { return NameOf(info.param); });
 
-// Of points, what a light sends to the segment is known exactly: I times the angle that it sees, over its distance.
-// The selection among them is in proportion to it, but for the share of defensive sampling.
+// For point lights the light on the segment is known exactly: I times the angle that the segment subtends, over its
+// distance. The selection among them is in proportion to it, except for the share of defensive sampling.
 TEST(SegmentSelectionOfPoints, IsExact) {
   Rng rng(4);
   const auto built = test::Build("point", "");
@@ -259,7 +259,7 @@ TEST(SegmentImportances, BoundsWhatItsPointsReceive) {
   EXPECT_GT(lit, 5000);
 }
 
-// As the selector makes it: not inlined, because GCC 12 merges the conversions of direction between float and double
+// Made as by the selector. Not inlined, because GCC 12 merges the conversions of direction between float and double
 // where both versions of importance are inlined.
 [[gnu::noinline]] TreeSegment SegmentFrom(const Point3& origin, const Vector3& direction, double length) {
   return TreeSegment(Point3d(origin), direction, length);

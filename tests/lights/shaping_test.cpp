@@ -196,7 +196,7 @@ const std::vector<Variant>& Variants() {
 constexpr std::pair<Emitter, const char*> kEmitters[] = {
     {Emitter::Point, "point"}, {Emitter::Flat, "flat"}, {Emitter::Round, "round"}};
 
-// What the density should follow.
+// The function to which the density should be proportional.
 double Target(const Shaping& shaping, Emitter emitter, const Vector3& d) {
   const double factor = static_cast<double>(shaping.Factor(d).Max());
   return emitter == Emitter::Flat ? factor * std::max(-static_cast<double>(d.z), 0.0) : factor;

@@ -112,7 +112,7 @@ class SuiteTest : public ::testing::Test {
     }
     return failed;
   }
-  // What failed last, in words.
+  // Description of the last failures.
   static std::string& Explained() {
     static std::string explained;
     return explained;
@@ -127,8 +127,8 @@ class SuiteTest : public ::testing::Test {
     }
   }
 
-  // What takes seconds (strata, fine directions) is looked at where single parts are asked for.
-  // The properties that fails what `change` makes of the light of that name.
+  // The properties that fail for the light of that name as changed by `change`. Slow checks (strata, fine directions)
+  // run only if single parts are requested.
   using Change = std::function<std::unique_ptr<Light>(std::shared_ptr<const Light>)>;
   Properties Failures(const std::string& name, const Change& change, unsigned parts = kAllParts) {
     const SuiteLight& light = SuiteLights().at(name);

@@ -176,7 +176,7 @@ class TilesLight final : public Light, private IntersectableLight {
   std::vector<float> cumulative_;
 };
 
-// Of a place on a tile: a few roundings of the terms that it is the sum of.
+// Rounding error of a position on a tile: a few roundings of the terms of its sum.
 inline Vector3 RoundingAt(const LightContext& context, const Point3& position) {
   const Vector3& translation = context.transform->toRender.translation;
   return 1e-6f * (glm::abs(position) + 2.0f * glm::abs(translation) + Vector3(1.0f));

@@ -35,7 +35,7 @@ LightType Stale(LightType type, std::optional<Part> part) {
 
 class WrongEdits : public SuiteTest {
  protected:
-  // Whether a light of that name passes being edited by `changes`.
+  // True if a light of that name passes the suite when edited by `changes`.
   bool Passes(const std::string& name, const std::string& changes, std::optional<Part> part) {
     const SuiteLight& light = SuiteLights().at(name);
     const LightType type = Stale(TypeOf(light), part);

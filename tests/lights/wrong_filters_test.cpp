@@ -72,7 +72,7 @@ class WrongFilter final : public LightFilter {
  private:
   static Color Clamped(const Color& c) { return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)}; }
 
-  // What the light is multiplied by beside the sound filter's factor.
+  // The factor on the light besides the correct filter's factor.
   float Strength(const FilterContext& context, const FilterSamples& samples, int i) const {
     const Point3& receiver = samples.receiver[i];
     switch (fault_) {
@@ -190,7 +190,7 @@ class WrongFilters : public testing::Test {
     ExpectNamed(With(name, fault), named, follow, name + " with fault " + std::to_string(static_cast<int>(fault)));
   }
 
-  // What compares factors at all: of a filter that is not the same twice, nothing holds.
+  // Properties that compare factors: all of them fail for a filter that is not deterministic.
   const Properties compares_ = {"combine", "coordsys",  "density", "groups", "identity", "invert",    "light", "lobes",
                                 "motion",  "placement", "repeat",  "batch",  "threads",  "light-pdf", "time"};
   TemporaryFolder folder_;
@@ -312,7 +312,7 @@ TEST_F(WrongFilters, AreCaughtCombiningByAnotherMode) {
   ExpectNamed(Builds("combiner", always), {"combine"}, {}, "does not ask whether a filter is enabled");
 }
 
-// What a type's table does not have, it is not asked for.
+// Properties of parameters that a type's table lacks are not tested.
 TEST_F(WrongFilters, HaveNoPropertyOfWhatTheirTableLacks) {
   FilterType type = *FindFilterType("barn");
   std::erase_if(type.parameters, [](const ParameterInfo& row) { return row.name == "combineMode"; });

@@ -98,7 +98,7 @@ class WrongLight final : public ForwardingLight {
     return {toRender, toLocal};
   }
 
-  // What samples and evaluations have in common.
+  // The values that samples and evaluations have in common.
   template <class Result>
   void Spoil(const LightContext& context, float cosine, const Vector3& toLight, Result& result) const;
   template <class Result>
@@ -173,7 +173,7 @@ inline std::optional<LightEvaluation> WrongLight::EvaluateSamples(const LightCon
   if (Is(Fault::LeaksBehind) && glm::dot(hit.normal, hit.direction) > 0) hit.normal = -hit.normal;
   auto evaluation = Sound().EvaluateSamples(context, hit, Receiver(context, P));
   if (Is(Fault::LeaksBehind) && Kind() == LightKind::Infinite && suite::IsBlack(*evaluation)) {
-    // As seen the other way, from beyond the portal.
+    // The same edge from the other side, beyond the portal.
     hit.position += 2 * context.scene.radius * hit.direction;
     hit.direction = -hit.direction;
     evaluation = Sound().EvaluateSamples(context, hit, hit.position);

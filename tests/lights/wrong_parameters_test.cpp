@@ -63,7 +63,7 @@ class WrongParameters : public SuiteTest {
   using Read = std::function<ParameterList(const ParameterList&)>;
   static LightType Reading(LightType type, const Read& read) {
     type.create = [create = type.create, read](const ParameterList& parameters, const LightBuildContext& build) {
-      // As its own Edit would: by the factory of the type as it is here.
+      // Like its own Edit: by the factory of this type.
       return create(read(parameters), build);
     };
     return type;
@@ -126,7 +126,7 @@ TEST_F(WrongParameters, ThatAreIgnoredAreFound) {
       EXPECT_TRUE(failed.count("parameters")) << type.name << " ignores " << name;
     }
   }
-  // What a camera sees: of deltas nothing, but the setting is theirs all the same.
+  // Visibility to the camera: deltas are never visible, but have the setting nevertheless.
   for (const LightType& type : Types()) {
     const auto failed =
         FailuresOf(Reading(type, [](const ParameterList& parameters) { return Without(parameters, "cameraVisible"); }));

@@ -129,7 +129,7 @@ TEST_F(WrongTypes, AreCaughtEmitting) {
        {"emission-integral", "power"},
        {"power-estimate"}},
       {Fault::EmitDensityOff, kPoints, {"power"}, {"power-estimate"}},
-      // So few photons are left of a sun that there may be none to look at.
+      // A sun has so few photons left that there may be none to check.
       {Fault::PhotonsNotWhereTheyEmit,
        kSurfaces + kSkies + Lights{"point", "spot", "goniometric", "portal"},
        {"power"},

@@ -56,7 +56,7 @@ TEST(BsdfEnergy, ReciprocityAndAdjoint) {
       EXPECT_NEAR(adjoint.g, radiance.g, model.tolerance * radiance.g) << model.name;
       ++compared;
       if (model.isHair || !model.isReciprocal) continue;
-      // Of the green lane, whichever was sampled.
+      // The green lane, whichever was sampled.
       const auto* dispersive = std::get_if<DispersiveBsdf>(&model.model);
       const bool isRefracted = sample.eta != 1, isInside = glm::dot(wo, bsdf.ShadingFrame().z) < 0;
       const float ofLane =
@@ -77,7 +77,7 @@ TEST(BsdfEnergy, NoModelGainsEnergy) {
       const TransportMode mode = model.isHair ? TransportMode::Radiance : TransportMode::Importance;
       const Mean albedo = Albedo(bsdf, bsdf.ShadingFrame().ToWorld(local), 4000, 5, mode);
       EXPECT_LE(albedo.Value(), 1.003 + 4.5 * albedo.Error()) << model.name << " from z = " << local.z;
-      // What single scattering at microfacets loses is lost: most from inside of rough glass.
+      // Energy lost by single scattering at microfacets is lost, most of it inside rough glass.
       EXPECT_GE(albedo.Value(), model.lossless ? 0.64 : 0.0) << model.name << " from z = " << local.z;
     }
   }

@@ -83,7 +83,7 @@ class MakeMaterialTest : public ::testing::Test {
 
 const Vector3 kUp(0, 0, 1), kTilted(0.6f, 0, 0.8f);
 
-// What is scattered of light from above, by one lobe: all of it where there is but one.
+// The part of light from above that is scattered, by one lobe: all of it if there is only one.
 Color ScatteredBy(const Bsdf& bsdf) {
   const auto sample = bsdf.Sample(kUp, 0.5f, {0.5f, 0.5f}, TransportMode::Importance);
   return sample ? sample.Weight() : Color(0.0f);
@@ -187,7 +187,7 @@ TEST_F(MakeMaterialTest, TexturedRoughnessInterpolatesTables) {
   EXPECT_NEAR(varying.g, constant.g, 0.01f * constant.g);
 }
 
-// What hair absorbs, by the first of the ways of saying so that is given: seen by what passes straight through.
+// Absorption of hair, by the first of its parameters that is given, measured by straight transmission.
 TEST_F(MakeMaterialTest, HairAbsorbsAsItIsSaid) {
   point_.uv = {0, 0.5f};
   const auto density = [&](std::vector<Parameter> parameters) {
@@ -205,7 +205,7 @@ TEST_F(MakeMaterialTest, HairAbsorbsAsItIsSaid) {
   EXPECT_EQ(gray, density({Rgb("color", 0.5, 0.5, 0.5)}));
   EXPECT_NEAR(gray.g, density({Rgb("sigma_a", 0.0138565, 0.0138565, 0.0138565)}).g, 1e-4f);
   EXPECT_TRUE(diagnostics_.Warnings().empty());
-  // What else is given is ignored, and said to be.
+  // Other parameters are ignored, with a warning.
   EXPECT_EQ(sigma,
             density({Rgb("sigma_a", 0.5447, 0.9061, 1.781), Rgb("reflectance", 1, 0, 0), Float("eumelanin", 8)}));
   EXPECT_EQ(diagnostics_.Warnings().size(), 2u);
@@ -327,7 +327,7 @@ TEST_F(MakeMaterialTest, GlassDispersesWhereItsIndexVaries) {
   EXPECT_TRUE(Create("dielectric", {numbers("cauchy", {1.5, 0.004})})->Disperses());
   named_ = {{"a", Create("diffuse", {})}, {"b", Create("dielectric", {Spectrum("eta", "glass-F11")})}};
   EXPECT_TRUE(Create("mix", {Strings("materials", {"a", "b"})})->Disperses());
-  // As red, green and blue it has the index at the sodium line.
+  // As red, green and blue it has the index at the d line of helium.
   const auto sample = At(*Create("dielectric", {numbers("cauchy", {1.5, 0.01})}))
                           .Sample({0.6f, 0, 0.8f}, 0.99f, {0.5f, 0.5f}, TransportMode::Radiance);
   EXPECT_NEAR(sample.eta, 1.5 + 0.01 / (0.58756 * 0.58756), 1e-4);

@@ -17,7 +17,7 @@ struct TestModel {
   BsdfModel model;
   float tolerance = 1e-3f;  // relative, of densities recomputed from a rounded direction
   bool lossless = false;    // nothing absorbs (single scattering at microfacets may still lose)
-  // Of a fibre: not symmetric, and without a surface that the flux through it could be held against.
+  // a fibre: not symmetric, and without a surface for a comparison of the flux
   bool isHair = false;
   bool isReciprocal = true;  // false: tabulated, and equal in both directions up to the tables' resolution
 };

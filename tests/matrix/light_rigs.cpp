@@ -33,7 +33,7 @@ bool IsAtInfinity(const std::string& type) {
 
 // The k-th place in the room, out of sight, or over the floor.
 std::string Placement(const std::string& type, const std::string& block, size_t k) {
-  // It shines along +z unless it says from where.
+  // A distant light shines along +z unless it has a "from".
   if (type == "distant" && block.find("point3 from") == std::string::npos) return "Rotate 90 1 0 0 ";
   if (type == "portal") return "Translate -0.1 0.9 0.1 Rotate -90 1 0 0 Scale 0.5 0.5 0.5 ";
   if (IsAtInfinity(type)) return "Rotate -90 1 0 0 ";
@@ -82,7 +82,7 @@ void AddLightRigs(std::vector<Rig>& rigs) {
     const double photonRadius = type->name == "spot" ? 0.02 : 0.08;
     if (count > 1) rigs.push_back({"light_" + name + "_others", Lit(*type, others, photonRadius), covers});
   }
-  // What lights have in common: seen by the camera or not, sending paths or not, groups, importance.
+  // Properties common to all lights: visible to the camera or not, starting paths or not, groups, importance.
   const std::string bulb = "LightSource \"point\" \"rgb I\" [0.5 0.5 1] \"point3 from\" [0.4 -0.3 0.2] ";
   rigs.push_back({"light_seen", Floor(Lamp("-0.35 0.25 0.3", 0.12) + Lamp("-0.1 0.9 0.3", 0.1)), {"light seen"}});
   rigs.push_back({"light_not_seen",

@@ -112,7 +112,7 @@ void AddMaterialRigs(std::vector<Rig>& rigs) {
     rigs.push_back({"mix_with_" + sample.name + "_object",
                     Room(kMatte, mixed + Lamp() + Object("NamedMaterial \"both\"")), covers});
   }
-  // What the others are called, and mixes of what is rough.
+  // Other names of materials, and mixes of rough ones.
   rigs.push_back(
       {"boundaries",
        Room(kMatte, Lamp() +

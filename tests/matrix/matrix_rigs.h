@@ -12,7 +12,7 @@ namespace lampyr::test {
 struct Rig {
   std::string name;
   std::string text;
-  // What the rig is about: "material mix", "light spot", "filter gobo", "camera orthographic", "motion occluder", …
+  // Subjects of the rig: "material mix", "light spot", "filter gobo", "camera orthographic", "motion occluder", …
   std::vector<std::string> covers;
   // Light tracing connects every vertex to the camera: it is blind to what the camera sees of deltas.
   bool cameraSeesDeltas = false;

@@ -55,7 +55,7 @@ const std::vector<Rig>& Rigs() {
   return rigs;
 }
 
-// Whether light tracing, if that is the mode, can show the rig.
+// False if the mode is light tracing and cannot show the rig.
 bool Sees(const Rig& rig, const Mode& mode) {
   return mode.integrator != "light" || !(rig.cameraSeesDeltas || rig.refusesLightPaths);
 }
@@ -322,7 +322,7 @@ TEST(MatrixIsWhole, EveryModeIsAColumn) {
         std::any_of(Modes().begin(), Modes().end(), [&](const Mode& mode) { return mode.integrator == name; });
     EXPECT_TRUE(isThere) << name;
     if (name == "light") continue;
-    // It learns, and does not.
+    // With learning and without.
     for (const bool learns : {false, true}) {
       EXPECT_TRUE(std::any_of(Modes().begin(), Modes().end(),
                               [&](const Mode& mode) { return mode.integrator == name && mode.learns == learns; }) ||

@@ -1,4 +1,4 @@
-// What moves while the shutter is open, over distances that are large beside the radius of photons; and the cameras.
+// Motion while the shutter is open, over distances that are large compared with the photon radius; and the cameras.
 #include "matrix/matrix_rigs.h"
 
 namespace lampyr::test {

@@ -1,4 +1,4 @@
-// What the example plugin computes: the ring against formulas and between integrators, the iris by hand.
+// Results of the example plugin: the ring against formulas and between integrators, the iris by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,7 +119,7 @@ Translate 0.45 0.3 0.4 Shape "sphere" "float radius" 0.3
                 196 * result.biasError);
     EXPECT_TRUE(result.Agrees()) << what;
     EXPECT_EQ(path.faults + other.faults, 0u) << what;
-    // What a picture that is 2 % too bright or too dark would have given.
+    // The test must detect a picture that is 2 % too bright or too dark.
     EXPECT_FALSE(CompareReplicas(other, path, 8, rate, 1.02).Agrees()) << what << ": too noisy";
     EXPECT_FALSE(CompareReplicas(other, path, 8, rate, 0.98).Agrees()) << what << ": too noisy";
   };

@@ -41,7 +41,7 @@ class BrokenPlugins : public Plugins {
 };
 
 TEST_F(BrokenPlugins, OfAnotherAbi) {
-  // It misses symbols as well, functions and tables, and would end the process as soon as it was loaded.
+  // The plugin also lacks symbols, functions and tables, and would end the process on loading.
   ExpectRefused(FaultyPlugin("other_abi"), "the ABI \"lampyr ", "\"lampyr 0.0.1, plugin interface 0, layout 7\"");
 }
 
@@ -122,7 +122,7 @@ TEST_F(BrokenPlugins, WithANameThatIsTaken) {
   ExpectSays(Run("lights --plugin '" + ring + "' --plugin folder/copy.so"), 2,
              {"the plugin \"folder/copy.so\": expected types of new names, found LightSource \"ring\"",
               "which the plugin \"" + ring + "\" has already"});
-  // What is asked for comes before what lies in a folder.
+  // A plugin that is named takes precedence over those in a folder.
   const Outcome outcome = Run("lights --plugin '" + ring + "'", "folder");
   ExpectSays(outcome, 0, {"warning: the plugin \"folder/copy.so\"", "from the plugin \"" + ring + "\""});
 }

@@ -26,7 +26,7 @@ class Plugins : public testing::Test {
     return RunLampyr(folder_.Path(), arguments, "LAMPYR_PLUGIN_PATH='" + path + "'");
   }
 
-  // That the command ends with `exitCode`, and says each of `texts`.
+  // Expects the command to end with `exitCode`, and its output to contain each of `texts`.
   void ExpectSays(const Outcome& outcome, int exitCode, const std::vector<std::string>& texts) {
     EXPECT_EQ(outcome.exitCode, exitCode) << outcome.output;
     for (const std::string& text : texts) {

@@ -74,7 +74,7 @@ class CutPass : public Resume {
     return BuildScene(ReadScene(folder_ / "scene.pbrt", diagnostics), overrides, true, diagnostics);
   }
 
-  // How often a pass was cut.
+  // Returns how often a pass was cut.
   int Check(const BuiltScene& built, std::mt19937& random) const {
     const int passes[] = {1, 1, 2, 3, 5, 8};
     OwnRender whole(built), cut(built);
@@ -133,7 +133,7 @@ TEST_F(CutPass, LeavesNoTrace) {
   std::printf("[   info   ] %d passes cut short\n", cuts);
 }
 
-// What a first pass has done is there for looking at, until it is dropped.
+// The picture of an unfinished first pass can be viewed until it is dropped.
 TEST_F(CutPass, OfTheFirstPassThePictureStays) {
   const BuiltScene built = Build("path", false, 400);
   OwnRender own(built);

@@ -61,7 +61,7 @@ TEST_F(Resume, TimeCountsOn) {
   EXPECT_LT(samples(), 1.5 * first);  // the time is over already
 }
 
-// Of a render that would go on for hours, on any machine: as far as it came, and a little farther.
+// A render that would take hours on any machine: it continues from where it was, and a little farther.
 TEST_F(Resume, GoesOnAfterASignal) {
   const std::string render = "render scene.pbrt --quiet --integrator bdpt ";
   uint64_t samples = 0;
@@ -100,7 +100,7 @@ TEST_F(Resume, TheMemoryForPhotonsIsPartOfTheRender) {
   EXPECT_TRUE(Bytes("whole.exr") == Bytes("out.exr"));
 }
 
-// What a lens file holds is part of what a render is.
+// The contents of a lens file are part of the identity of a render.
 TEST_F(Resume, ALensIsPartOfTheRender) {
   const auto write = [&](const char* thickness) {
     WriteBytes(folder_ / "lens.dat", std::string("0 2 0 10\n50 ") + thickness + " 1.5 20\n-50 40 1 20\n");
@@ -145,7 +145,7 @@ TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
   WriteBytes(folder_ / "scene.pbrt", std::string(kScene) + "Shape \"sphere\"\n");
   refused("", "the scene's text");
   WriteBytes(folder_ / "scene.pbrt", kScene);
-  // Of another version: the same bytes but for its name, and the checksum of that.
+  // A checkpoint of another version: the same bytes except for the version's name and the checksum.
   constexpr size_t kEnd = 24, kChecksum = 16;
   std::string other = checkpoint;
   const std::string version = kVersion;

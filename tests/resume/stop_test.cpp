@@ -130,7 +130,7 @@ class Stop : public Resume {
     std::filesystem::remove_all(folder_ / "report");
   }
 
-  // What a stopped render leaves. Without an image, it was stopped before it began, and has left nothing at all.
+  // Checks the output of a stopped render. Without an image, it was stopped before it began, and has left no file.
   void CheckOutput(const std::string& command) {
     for (const auto& entry : std::filesystem::directory_iterator(folder_.Path()))
       EXPECT_NE(entry.path().extension(), ".tmp") << command << ": " << entry.path();
@@ -229,7 +229,7 @@ TEST_F(Stop, OfAComparisonIsAnsweredWithinAPass) {
   }
 }
 
-// Of a part, too: what its image carries are whole samples.
+// The same for a part, whose image holds whole samples only.
 TEST_F(Stop, APartWithoutAWholeSampleIsNotFinished) {
   const Outcome outcome = Run("render sphere.pbrt --quiet --spp 8 --time 0.2s --shard 1/2 -o p1.exr");
   EXPECT_NE(outcome.output.find("the part holds no samples"), std::string::npos) << outcome.output;
@@ -259,7 +259,7 @@ TEST_F(Stop, ASecondHangupDoesNot) {
   EXPECT_TRUE(Exists("out.exr"));
 }
 
-// As nohup does.
+// As under nohup.
 TEST_F(Stop, AHangupThatIsIgnoredStaysSo) {
   const Outcome outcome = RunLampyr(
       folder_.Path(), "render scene.pbrt --quiet --time 1s -o out.exr & p=$!; sleep 0.5; kill -HUP $p; wait $p",

@@ -14,7 +14,7 @@ struct Estimate {
     ++count;
   }
   double Mean() const { return sum / count; }
-  // Of the mean.
+  // Variance of the mean.
   double Variance() const { return std::max(0.0, squares / count - Mean() * Mean()) / count; }
 };
 

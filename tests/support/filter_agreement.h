@@ -1,5 +1,5 @@
-// Whether all integrators see the same through a filter of any type: a scene in which its sample block lies on lights
-// of each kind, and the comparison with path tracing.
+// Agreement of all integrators through a filter of any type: a scene in which its sample block is bound to lights of
+// each kind, and the comparison with path tracing.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -45,7 +45,7 @@ class LampyrProcess {
     pointers.push_back(nullptr);
     process_ = fork();
     if (process_ == 0) {
-      // Who runs the tests may have been started to ignore them.
+      // The process that runs the tests may have been started with these signals ignored.
       for (const int ignored : {SIGINT, SIGHUP, SIGTERM}) signal(ignored, SIG_DFL);
       if (chdir(folder.c_str()) == 0) execv(LAMPYR_BINARY, pointers.data());
       _exit(99);

@@ -1,4 +1,4 @@
-// How noisy a picture is with one way to select lights or another, and what that costs: for tests and benchmarks.
+// Noise and cost of a picture by different light selections, for tests and benchmarks.
 #pragma once
 
 #include <ctime>

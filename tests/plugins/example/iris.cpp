@@ -11,7 +11,7 @@ using namespace lampyr;
 
 namespace {
 
-// What the parameters mean is digested here, once: Factor is called for every edge.
+// Quantities that follow from the parameters are computed once, here, because Factor is called for every edge.
 struct Iris {
   float inner, outer;  // radians
 

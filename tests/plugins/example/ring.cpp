@@ -327,7 +327,8 @@ LightType RingLightType() {
     }
     return std::make_unique<RingLight>(parameters, build, ring);
   };
-  // What `lampyr check-lights --plugin ring.so` tries, under all of its transforms. The suite brings the image.
+  // Parameter blocks that `lampyr check-lights --plugin ring.so` tests, under all transforms. The suite provides the
+  // image.
   type.samples = {
       "\"rgb color\" [ 1 0.5 0.25 ] \"float intensity\" 3 \"float exposure\" 1",
       "\"float innerRadius\" 0 \"bool twoSided\" true \"bool normalize\" true \"float diffuse\" 0.5 "

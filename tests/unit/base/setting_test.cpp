@@ -46,7 +46,7 @@ TEST(Setting, SaysWhatWouldBeRight) {
   EXPECT_THAT(ErrorOf(kSwitch, "maybe"), HasSubstr("neither on nor off"));
 }
 
-// What a scene leaves out is its fallback, in the range or not.
+// A setting that a scene does not give has its fallback, in range or not.
 TEST(Setting, ItsFallbackIsAlwaysAllowed) {
   EXPECT_EQ(kCount.Check(int64_t{-1}), kCount.fallback);
   EXPECT_THROW(kCount.Check(int64_t{0}), Error);

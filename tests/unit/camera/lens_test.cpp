@@ -58,7 +58,7 @@ Mean MeanOver(uint32_t count, int seed, const Value& value) {
   const double mean = sum / count;
   return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
 }
-// What a pixel of the camera measures of a sky of radiance 1, at a film point.
+// The value of a pixel of the camera under a sky of radiance 1, at a film point.
 Mean WeightAt(const Camera& camera, const Point2& film, uint32_t count = 1u << 16) {
   return MeanOver(count, 1, [&](Sampler& sampler) {
     return static_cast<double>(camera.GenerateRay(film, sampler.Get2D(), 0).weight);

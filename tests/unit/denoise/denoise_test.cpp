@@ -61,7 +61,7 @@ Image Denoised(const Image& noisy, int threads = 1, DenoiseReport* report = null
       noisy, threads, interrupted, [](double) {}, report ? *report : own);
 }
 
-// How far channel G is from the truth where `counts` says so, and how often the stated error covers that at 95 %.
+// Error of channel G where `counts` is true, and the fraction of pixels where the stated error covers it at 95 %.
 struct Quality {
   double squaredError = 0, meanError = 0, covered = 0, stated = 0;
 };
@@ -282,7 +282,7 @@ TEST(Denoise, AnOutlierIsNotSmearedButReportedAndStated) {
   for (int y = 0; y < denoised.height; ++y) {
     for (int x = 0; x < denoised.width; ++x) EXPECT_NEAR(denoised.At(x, y, 1), 0.5f, 0.1f) << x << ", " << y;
   }
-  // It may have been light that belongs around it: 500 over a window.
+  // The outlier may have been light of its surroundings: 500 over a window.
   EXPECT_GT(std::sqrt(denoised.At(24, 20, 4)), 1);
 }
 

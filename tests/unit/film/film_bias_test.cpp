@@ -149,7 +149,7 @@ TEST(FilmBias, IsSavedAndRead) {
   EXPECT_EQ(SavedBias(read), bytes);
 }
 
-// What films of other integrators save is what it was: their files can still be read.
+// The saved films of other integrators are unchanged: their files can still be read.
 TEST(FilmBias, OfFilmsWithoutItIsNotSaved) {
   Film film(2, 1, {0, 0, 2, 1});
   film.Pixel(0, 0).Add(Color(1.0f), 1);

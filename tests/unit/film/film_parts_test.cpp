@@ -58,7 +58,7 @@ TEST(FilmParts, AddUpToTheWhole) {
     sum.Add(first);
     EXPECT_EQ(sum.Develop().data, whole.Develop().data) << at;
     EXPECT_EQ(sum.LightPaths(), whole.LightPaths());
-    // It only says how far the image may be off.
+    // This is only an estimate of the error of the image.
     EXPECT_NEAR(sum.RelativeError(), whole.RelativeError(), 0.2 * whole.RelativeError());
   }
 }

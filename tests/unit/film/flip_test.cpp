@@ -40,7 +40,7 @@ TEST(Flip, KnownValuesOfConstantImages) {
   const double knee = 0.4 * 41.2761, expected = 0.95 + 0.05 * (std::pow(100.0, 0.7) - knee) / (41.2761 - knee);
   EXPECT_NEAR(FlipOf(black, white, 8, 8), expected, 1e-4);
   EXPECT_NEAR(FlipOf(green, blue, 8, 8), 1, 1e-4);
-  // What a display clips is no difference.
+  // Values that a display clips do not differ.
   EXPECT_EQ(FlipOf(white, Pixels(64, Color(50.0f)), 8, 8), 0);
 }
 

@@ -32,7 +32,7 @@ Image Noisy(double deviation, unsigned seed, double scale = 1) {
   return image;
 }
 
-// Of n normal deviates: the mean of their squares is off by no more than this, relative, four times in 1e5.
+// For n normal deviates, the mean of their squares is off by no more than this, relatively, except 4 times in 1e5.
 const double kSlack = 4 * std::sqrt(2.0 / (3 * kSide * kSide));
 
 TEST(ImageError, TheNoiseOfTheReferenceIsSubtracted) {
@@ -99,7 +99,7 @@ TEST(ImageError, TheMapHoldsEachPixelsShare) {
   EXPECT_NEAR(sum / (kSide * kSide), MeasureError(image, reference).relMse, 1e-7);
 }
 
-// What is left after the noise is subtracted is 0 in the mean, and as far off as the noise's errors say.
+// The remainder after subtraction of the noise has the mean 0, and the standard error that the noise's errors give.
 TEST(ImageError, KnowsHowWellTheNoiseIsSubtracted) {
   const Image truth = Noisy(0, 10);
   double squares = 0, relSquares = 0, meanSquares = 0;

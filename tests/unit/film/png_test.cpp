@@ -128,7 +128,7 @@ TEST(PngKinds, SixteenBitsAreAsTheFileSays) {
                [&](int x, int y, int) { return static_cast<double>(SrgbToLinear(stored(x, y, 8))); });
 }
 
-// What a file says about itself is not read, packed or not, before the pixels or damaged.
+// Text chunks of a file are skipped, packed or not, before the pixels or damaged.
 TEST(PngKinds, TextsAreSkipped) {
   const TemporaryFolder folder;
   const std::string none(1, '\0'), packed = Deflated("a comment, packed");

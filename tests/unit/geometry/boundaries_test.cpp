@@ -175,7 +175,7 @@ std::vector<Subject> Subjects() {
           {"saddle", std::make_shared<const BilinearMesh>(SaddlePatch()), CrossSaddle}};
 }
 
-// What is crossed in (0, tMax) of a ray from `o` along `d`, both in the shape's own space.
+// Expected crossings in (0, tMax) of a ray from `o` along `d`, both in the shape's own space.
 std::optional<std::vector<Expected>> Expect(Analytic cross, const Point3d& o, const Vector3d& d, double tMax) {
   Line line = cross(o, d);
   if (!line.isSure) return std::nullopt;

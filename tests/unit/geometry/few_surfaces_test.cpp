@@ -189,7 +189,7 @@ struct Setting {
   Point3 center;
 };
 
-// What is tested one by one: up to 64 triangles, two of which are a parallelogram, and 32 other surfaces.
+// Scenes that are tested one by one: up to 64 triangles, two of which are a parallelogram, and 32 other surfaces.
 TEST(FewSurfaces, AreThoseOfSmallScenes) {
   const auto areFew = [](auto shape, bool hasInstance = false) {
     SceneTables tables;

@@ -44,7 +44,7 @@ TEST(LoopSubdivision, VerticesLieOnTheLimitAtEveryLevel) {
       EXPECT_NEAR(glm::length(mesh.normals[i] + kOctahedron[i]), 0, 1e-5);
     }
   }
-  // What a level calls the limit, the next ones keep.
+  // Further levels keep the limit positions of a level.
   const SubdividedMesh coarse = Subdivide(kOctahedron, kOctahedronFaces, 1),
                        fine = Subdivide(kOctahedron, kOctahedronFaces, 4);
   for (size_t i = 0; i < coarse.positions.size(); ++i) {

@@ -96,7 +96,8 @@ TEST(MediumAt, OfAnOpenSheet) {
   }
 }
 
-// What stops light is met from both sides, whatever it says of the other one: a boundary decides, wherever it is.
+// Surfaces that stop light are hit from both sides, whatever medium they declare on the other one: a boundary decides,
+// wherever it is.
 TEST(MediumAt, OfASideOfWhatStopsLight) {
   const auto sceneWith = [](bool hasBall) {
     GeometryDescription description;
@@ -142,7 +143,7 @@ TEST(MediumAt, OfASideOfASurface) {
   }
 }
 
-// Of boundaries that overlap, or are turned the wrong way, one is named.
+// One of several boundaries that overlap, or are turned the wrong way, is named.
 TEST(MediumAt, NamesWhatIsDisputed) {
   const auto find = [](std::vector<GeometryEntry> entries, const Point3& p) {
     GeometryDescription description;
@@ -158,7 +159,7 @@ TEST(MediumAt, NamesWhatIsDisputed) {
   const FoundMedium turned = find({Separating(Sphere(3), 1, kVacuum), Separating(Sphere(1), 2, kVacuum)}, Point3(0.0f));
   EXPECT_EQ(turned.medium, 2);
   EXPECT_EQ(turned.disputed, 0u);
-  // What is behind a surface that stops rays contradicts nothing.
+  // Surfaces behind one that stops rays contradict nothing.
   const FoundMedium behind = find({Separating(Sphere(3), 1, kVacuum), Separating(Sphere(1), kVacuum, 1, false),
                                    Separating(SphereAt({0.9, 0, 0}, 1), kVacuum, 1, false)},
                                   {-2, 0, 0});

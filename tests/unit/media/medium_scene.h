@@ -1,4 +1,4 @@
-// What the tests of media share: media of a scene's text.
+// Support for the tests of media: media of a scene's text.
 #pragma once
 
 #include <gtest/gtest.h>

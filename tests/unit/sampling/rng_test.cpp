@@ -1,4 +1,4 @@
-// What is made of few random numbers when more are needed.
+// Derivation of further random numbers from few.
 #include <gtest/gtest.h>
 
 #include "sampling/rng.h"

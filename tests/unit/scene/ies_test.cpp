@@ -65,7 +65,7 @@ TEST(Ies, TiltIsOfTheLuminaireNotOfTheDirection) {
   const auto included = ParseIes("IESNA91\nTILT=INCLUDE\n" + tilt + Numbers("1"), "a.ies");
   EXPECT_NEAR(At(*included, 0, 0), 7, 1e-12);
   EXPECT_NEAR(At(*included, 90, 0), 14, 1e-12);
-  // Of itself the table begins at 0° with a factor of 1.
+  // Usual tables begin at 0° with a factor of 1.
   EXPECT_NEAR(At(*ParseIes("IESNA91\nTILT=INCLUDE\n2 3 0 45 90 1 0.8 0.6 " + Numbers("1"), "a.ies"), 45, 0), 15, 1e-12);
 
   const TemporaryFolder folder;
@@ -197,7 +197,7 @@ TEST(Ies, KnotsAscendOverTheFullCircle) {
   }
 }
 
-// What the scenes come with, by what can be read off the files.
+// The profiles of the scenes, against values that can be read off the files.
 TEST(Ies, ProfilesOfTheScenes) {
   const auto read = [](const char* name) {
     return ReadIes(LAMPYR_SOURCE_DIR "/scenes/profiles/" + std::string(name), {});

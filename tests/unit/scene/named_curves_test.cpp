@@ -25,7 +25,7 @@ struct Chromaticity {
   double x, y;
 };
 
-// Of light relative to D65.
+// Chromaticity of light relative to D65.
 Chromaticity ChromaticityOf(const SpectralCurve& relativeToWhite) {
   const Vector3d xyz = Rec709ToXyz() * ColorOf(relativeToWhite);
   const double sum = xyz.x + xyz.y + xyz.z;

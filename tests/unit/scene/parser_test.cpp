@@ -1,4 +1,4 @@
-// What statements make of the scene: scopes, attributes, objects, materials, textures, lights.
+// The scenes that statements describe: scopes, attributes, objects, materials, textures, lights.
 #include <gmock/gmock.h>
 
 #include "unit/scene/scene_support.h"
@@ -291,7 +291,7 @@ TEST(Parser, MediaReachShapesLightsAndTheCamera) {
             "scene.pbrt:2:1: error: MakeNamedMedium \"a\" needs a \"string type\"");
 }
 
-// What is scaled to nothing is left out with a warning; the scope, Identity or Transform ends it.
+// Shapes that are scaled to nothing are left out with a warning, until the end of the scope, Identity or Transform.
 TEST(Parser, ShapesWithoutExtentAreLeftOut) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const SceneDescription scene = ParseScene(InWorld(R"(

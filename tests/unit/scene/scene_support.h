@@ -1,4 +1,4 @@
-// What the tests of scene files share: parsing a text, the message of an error, a folder for files.
+// Support for the tests of scene files: parsing a text, the message of an error, a folder for files.
 #pragma once
 
 #include <gtest/gtest.h>

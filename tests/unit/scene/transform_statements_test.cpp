@@ -73,7 +73,7 @@ TEST(TransformStatements, WorldBeginResetsAndNamesCoordinateSystems) {
   EXPECT_TRUE(scene.shapes[3].placement.start.IsIdentity());
 }
 
-// What is singular at one time stays so, until that time has another transform.
+// A CTM that is singular at one time remains so until that time has another transform.
 TEST(TransformStatements, SingularAtOneTimeIsSingular) {
   const std::string start =
       "ActiveTransform StartTime Scale 0 1 1 ActiveTransform EndTime Identity ActiveTransform All ";

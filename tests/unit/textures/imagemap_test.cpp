@@ -44,7 +44,7 @@ TEST(TexelLookup, CentresGiveTexelsInBothFilters) {
   }
 }
 
-// As in pbrt-v4: where alpha says something, it is what a float texture reads.
+// As in pbrt-v4: a float texture reads the alpha if it is not 1 everywhere.
 TEST(TexelLookup, FloatsOfImagesWithAlphaAreTheAlpha) {
   for (const float alpha : {1.0f, 0.25f}) {
     auto image = std::make_shared<Image>(4, 2, std::vector<std::string>{"R", "G", "B", "A"});
