@@ -242,10 +242,8 @@ class Desk::Requests {
   // Renders the edited scene. `edited`: a statement whose current values are part of the reply; null: none.
   HttpReply Restarted(const Json& edited = nullptr, const std::vector<std::string>& notes = {}) const {
     const double seconds = desk_.session_.Restart(desk_.scene_.Built());
-    return ReplyWith({{"seconds", seconds},
-                      {"restart", desk_.session_.State().restart},
-                      {"statement", edited},
-                      {"notes", notes}});
+    return ReplyWith(
+        {{"seconds", seconds}, {"restart", desk_.session_.State().restart}, {"statement", edited}, {"notes", notes}});
   }
 
   HttpReply Edit() const {

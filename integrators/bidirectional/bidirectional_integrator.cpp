@@ -357,9 +357,10 @@ class CameraSide final : public PathVisitor {
     if (sample_.settings.photons.radius == 0) {
       const auto size = static_cast<double>(sample_.Lighting().SceneSphere().radius);
       // The radii of a camera of parallel rays are the same at all distances.
-      sample_.perArea = isParallel ? 1.0f
-                                   : static_cast<float>(firstFootprint_ / (firstDistance_ * firstDistance_) * size *
-                                                        size / footprint);
+      sample_.perArea =
+          isParallel
+              ? 1.0f
+              : static_cast<float>(firstFootprint_ / (firstDistance_ * firstDistance_) * size * size / footprint);
     }
     sample_.merging = sample_.MergingAt(distance, footprint, sample_.film);
   }

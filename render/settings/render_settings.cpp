@@ -466,7 +466,8 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
       if (parameters.Find(name))
         diagnostics.Warn(parameters.WhereOf(name), "\"" + std::string(name) + "\" has no effect on a spherical camera");
     }
-    if (!(frame.filmMargin.x < static_cast<float>(frame.width) && frame.filmMargin.y < static_cast<float>(frame.height)))
+    if (!(frame.filmMargin.x < static_cast<float>(frame.width) &&
+          frame.filmMargin.y < static_cast<float>(frame.height)))
       throw Error(description.pixelFilter.where,
                   "the radius of the filter of a spherical camera must be less than its image, which goes all around");
     camera = MakeSphericalCamera(

@@ -68,8 +68,8 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
   }
   const double step = 2 * r / kSteps;
   if (settings.kind == Kind::Gaussian && static_cast<double>(settings.sigma) < step)
-    throw Error("the pixel filter's \"sigma\" must be at least " + std::to_string(step) +
-                ", the radius over " + std::to_string(kSteps / 2));
+    throw Error("the pixel filter's \"sigma\" must be at least " + std::to_string(step) + ", the radius over " +
+                std::to_string(kSteps / 2));
   std::vector<double> sums(kSteps + 1, 0.0), absoluteSums(kSteps + 1, 0.0);  // of f and |f| up to each step
   double squares = 0;
   for (size_t i = 0; i < kSteps; ++i) {

@@ -66,6 +66,24 @@ std::string Fire(double radius, const std::string& placement, double brightness 
          "Shape \"sphere\" \"float radius\" " + Number(radius) + "\nAttributeEnd\n";
 }
 
+// A tube of 64 sides, of which each is a thousand times as long as wide, seen directly: nothing else is lit.
+std::string SlenderTube() {
+  constexpr int kSides = 64;
+  std::string positions, indices;
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kSides;
+    const std::string circle = Number(0.01 * std::cos(angle)) + " " + Number(0.01 * std::sin(angle)) + " ";
+    positions += "-1 " + circle + "1 " + circle;
+    const std::string a = Number(2 * i) + " ", b = Number(2 * i + 1) + " ", c = Number(2 * ((i + 1) % kSides)) + " ",
+                      d = Number(2 * ((i + 1) % kSides) + 1) + " ";
+    indices += a + b + c + c + b + d;
+  }
+  return Film("LookAt 0 1 10  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 14\n") +
+         "WorldBegin\nRotate 20 0 0 1\nMaterial \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\nAreaLightSource \"diffuse\" "
+         "\"rgb L\" [ 100 100 100 ] \"bool twosided\" true\nShape \"trianglemesh\" \"integer indices\" [ " +
+         indices + "] \"point3 P\" [ " + positions + "]\n";
+}
+
 // A quadrilateral above a floor, where a unit has the given length.
 std::string LargeQuad(double scale) {
   const auto at = [&](double value) { return Number(value * scale) + " "; };
@@ -180,7 +198,30 @@ std::vector<Corner> Corners() {
       "Texture \"slope\" \"float\" \"bilerp\" \"float v10\" 0 \"float v11\" 0 \"float v00\" 0 \"float v01\" 60\n"
       "MakeNamedMaterial \"other\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] \"texture displacement\" "
       "\"slope\"\n";
+  // Fog and a lamp, above a ground that ends far away.
+  const std::string farGround =
+      "AttributeBegin\nTranslate 0 -3 0 Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\nShape \"bilinearmesh\" "
+      "\"point3 P\" [ -500 0 500  500 0 500  -500 0 -500  500 0 -500 ]\nAttributeEnd\n";
+  const std::string smallFog =
+      Film("LookAt 0 0.3 4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n") +
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.05 0.05 0.05 ] \"rgb "
+      "sigma_s\" [ 0.3 0.3 0.3 ]\nAttributeBegin\nMediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" "
+      "\"float radius\" 2\nAttributeEnd\nMediumInterface \"fog\"\nMaterial \"diffuse\"\nShape \"bilinearmesh\" "
+      "\"point3 P\" [ -1 -0.5 1  1 -0.5 1  -1 -0.5 -1  1 -0.5 -1 ]\nLightSource \"point\" \"rgb I\" [ 2 2 2 ] "
+      "\"point3 from\" [ 0 0.5 0 ]\nMediumInterface \"\"\n" +
+      farGround;
+  // A pixel shows less than the rounding of positions at the scene's edge.
+  const std::string detail =
+      Film("LookAt 0.08 0.06 0.1  0 0.01 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n") +
+      "WorldBegin\nMaterial \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [ -1 0 1  1 0 1  -1 0 -1  1 0 -1 ]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [ -1e6 -1 1e6  1e6 -1 1e6  -1e6 -1 -1e6  1e6 -1 -1e6 ]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [ -0.05 0 -0.03  0.05 0 -0.03  -0.05 0.1 -0.03  0.05 0.1 -0.03 ]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] Translate 0 0.03 0 Rotate -90 1 0 0 LightSource \"disk\" "
+      "\"rgb color\" [ 10 10 10 ] \"float radius\" 0.005\n";
   return {
+      {"tube_of_slender_triangles", SlenderTube(), {"path", "light", "bdpt", "vcm"}, 512},
+      {"small_fog_above_a_far_ground", smallFog, {"bdpt", "vcm"}},
+      {"detail_of_a_large_scene", detail, {"path", "bdpt", "vcm", "sppm"}},
       {"mixed_with_glass_between_lamps", BetweenLamps(glass), {"path", "bdpt", "vcm"}, 256, 0.1, 0.02},
       {"mixed_with_a_slope_between_lamps", BetweenLamps(slope), {"path", "bdpt", "vcm"}, 256, 0.1, 0.02},
       {"vertex_that_no_face_uses", unused, {"path", "light", "bdpt", "sppm"}},
