@@ -554,28 +554,15 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       isPartial ? DescribePartialPicture(options_, film, settings_, integrator_->Paths()) : "";
   // The sums in the image of a part require whole samples.
   if (options_.shard) render.DropPartialPass();
-  // Each of the results is written even if another one fails. The first failure ends the command; the others are
-  // printed.
-  std::exception_ptr failure;
-  const auto attempt = [&](const auto& write) {
-    try {
-      write();
-    } catch (const Error& error) {
-      if (failure) std::fprintf(stderr, "%s\n", error.what());
-      if (!failure) failure = std::current_exception();
-    } catch (const std::exception& error) {  // from a library or the system
-      if (failure) std::fprintf(stderr, "error: %s\n", error.what());
-      if (!failure) failure = std::current_exception();
-    }
-  };
-  attempt([&] { WriteImageOrKeepIt(path_, options_, header_, film, layers_, report_.outcome); });
-  const bool isWritten = !failure;
-  if (options_.strategyImages) attempt([&] { WriteStrategies(options_, settings_, film.Develop()); });
+  Outputs outputs;
+  outputs.Write([&] { WriteImageOrKeepIt(path_, options_, header_, film, layers_, report_.outcome); });
+  const bool isWritten = !outputs.HasFailed();
+  if (options_.strategyImages) outputs.Write([&] { WriteStrategies(options_, settings_, film.Develop()); });
   if (options_.png || options_.previewSeconds)
-    attempt([&] { WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng); });
-  if (options_.denoise && !options_.shard && !isPartial && isWritten) attempt([&] { DenoisePicture(); });
+    outputs.Write([&] { WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng); });
+  if (options_.denoise && !options_.shard && !isPartial && isWritten) outputs.Write([&] { DenoisePicture(); });
   render.DropPartialPass();
-  if (checkpoints) attempt([&] { checkpoints->Finish(report_.outcome); });
+  if (checkpoints) outputs.Write([&] { checkpoints->Finish(report_.outcome); });
   report_.writeSeconds = clock.Seconds();
   if (settings_.adaptive) {
     report_.adaptive = RenderReport::Adaptive{settings_.adaptive->share, film.Samples(0), film.Samples(0)};
@@ -584,9 +571,9 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       report_.adaptive->mostSamples = std::max(report_.adaptive->mostSamples, film.Samples(i));
     }
   }
-  if (options_.stats) attempt([&] { WriteText(*options_.stats, ToJson(report_)); });
+  if (options_.stats) outputs.Write([&] { WriteText(*options_.stats, ToJson(report_)); });
   if (!options_.quiet) PrintSummary(report_, settings_.crop, path_, options_);
-  if (failure) std::rethrow_exception(failure);
+  outputs.ThrowFailure();
   return ExitCode(partialPicture);
 }
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "app/command_line.h"
+#include "base/error.h"
 #include "base/memory.h"
 #include "base/stop.h"
 
@@ -69,6 +70,24 @@ int FinishRendering(const std::function<int()>& finish) {
 
 int InterruptExitCode() {
   return kExitSignalled + interruptSignal.load();
+}
+
+void Outputs::Write(const std::function<void()>& write) {
+  const auto keep = [this](const char* message) {
+    if (first_) std::fprintf(stderr, "%s\n", message);
+    if (!first_) first_ = std::current_exception();
+  };
+  try {
+    write();
+  } catch (const Error& error) {
+    keep(error.what());
+  } catch (const std::exception& error) {  // of a library or the system
+    keep((std::string("error: ") + error.what()).c_str());
+  }
+}
+
+void Outputs::ThrowFailure() const {
+  if (first_) std::rethrow_exception(first_);
 }
 
 std::string Joined(const std::vector<std::string>& names, const char* separator) {

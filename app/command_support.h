@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <string>
 #include <vector>
@@ -18,6 +19,18 @@ const std::atomic<bool>& FinishOnInterrupt();
 int FinishRendering(const std::function<int()>& finish);
 // Exit code of an interrupted command: 128 plus the signal's number.
 int InterruptExitCode();
+
+// Writes outputs of which each is written even if another one fails.
+class Outputs {
+ public:
+  void Write(const std::function<void()>& write);
+  bool HasFailed() const { return first_ != nullptr; }
+  // Throws the first failure; the others have been reported on stderr.
+  void ThrowFailure() const;
+
+ private:
+  std::exception_ptr first_;
+};
 
 std::string Joined(const std::vector<std::string>& names, const char* separator);
 

@@ -71,8 +71,16 @@ shift 3
 [ -f "$scene" ] || fail "there is no scene \"$scene\""
 [[ $parts =~ ^[1-9][0-9]*$ ]] || fail "\"$parts\" is no number of parts"
 [[ $output == *.exr ]] || fail "\"$output\" must end in .exr"
+stops=
 for option in "$@"; do
   case $option in
+    --time* | --target-error*) stops=$option ;;
+  esac
+done
+for option in "$@"; do
+  case $option in
+    --spp*)
+      [ -z "$stops" ] || fail "$option with $stops: parts that stop before they have their samples are not merged" ;;
     --threads* | --checkpoint* | --shard* | --resume | --output* | -o*)
       fail "$option is set by this script; cores: --cpus-per-task in LAMPYR_SBATCH; checkpoints: LAMPYR_CHECKPOINT" ;;
   esac

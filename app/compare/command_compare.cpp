@@ -178,25 +178,17 @@ void WritePictures(const std::filesystem::path& folder, const ComparisonResults&
 
 void WriteResults(const CompareOptions& options, const std::filesystem::path& folder, const ComparisonPlan& plan,
                   const ComparisonResults& results) {
-  // A file that cannot be written must not prevent the others: the first failure is thrown after all have been
-  // reported.
-  std::exception_ptr failure;
-  const auto attempt = [&failure](const auto& write) {
-    try {
-      write();
-    } catch (const Error&) {
-      if (!failure) failure = std::current_exception();
-    }
-  };
-  attempt([&] { WriteText(folder / "results.json", ToJson(results)); });
-  attempt([&] { WriteText(folder / "results.csv", ToCsv(results)); });
+  Outputs outputs;
+  outputs.Write([&] { WriteText(folder / "results.json", ToJson(results)); });
+  outputs.Write([&] { WriteText(folder / "results.csv", ToCsv(results)); });
   const std::string page = ToPage(results);
-  if (!page.empty()) attempt([&] { WriteText(folder / "report.html", page); });
-  attempt([&] { WritePictures(folder, results); });
+  if (!page.empty()) outputs.Write([&] { WriteText(folder / "report.html", page); });
+  outputs.Write([&] { WritePictures(folder, results); });
   if (!options.quiet) {
     std::printf("%s", ToText(results).c_str());
     if (results.repeats < plan.repeats) std::printf("interrupted: %d of %d repeats\n", results.repeats, plan.repeats);
-    std::printf("\n%s: results.csv, results.json%s\n", folder.c_str(), page.empty() ? "" : ", report.html");
+    if (!outputs.HasFailed())
+      std::printf("\n%s: results.csv, results.json%s\n", folder.c_str(), page.empty() ? "" : ", report.html");
   }
   if (page.empty()) {
     std::fprintf(stderr,
@@ -213,7 +205,7 @@ void WriteResults(const CompareOptions& options, const std::filesystem::path& fo
                  results.reference.IsBlurred() ? " and blur" : "",
                  options.reference ? "use a reference of more samples" : "give it more time with --reference-time");
   }
-  if (failure) std::rethrow_exception(failure);
+  outputs.ThrowFailure();
 }
 
 // The part of the description of the run that is known before any measurement.

@@ -1,8 +1,6 @@
 #include "app/desk/keep_scene.h"
 
 #include <algorithm>
-#include <array>
-#include <memory>
 #include <optional>
 #include <system_error>
 
@@ -69,21 +67,6 @@ FreeCopies FindFreeCopies(const fs::path& scene, const std::vector<StatementChan
   throw Error("there are " + std::to_string(kMost) + " kept scenes already: remove some");
 }
 
-// The fader without a layer is that of all light.
-void Scale(const Color& factor, Image& image) {
-  const std::array<const char*, 3> names = {"R", "G", "B"};
-  for (size_t c = 0; c < 3; ++c) {
-    const int value = image.ChannelIndex(names[c]), variance = image.ChannelIndex(std::string("variance.") + names[c]);
-    const float by = c == 0 ? factor.r : c == 1 ? factor.g : factor.b;
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        image.At(x, y, static_cast<size_t>(value)) *= by;
-        if (variance >= 0) image.At(x, y, static_cast<size_t>(variance)) *= by * by;
-      }
-    }
-  }
-}
-
 void WritePicture(const fs::path& path, const BuiltScene& scene, const Film& film, int samplesPerPixel,
                   const std::vector<Fader>& faders, const std::vector<Color>& factors) {
   Image image = film.Develop();
@@ -98,8 +81,8 @@ void WritePicture(const fs::path& path, const BuiltScene& scene, const Film& fil
   std::vector<LayerFactor> mixed;
   for (size_t i = 0; i < faders.size(); ++i) {
     if (factors[i] == Color(1.0f)) continue;
-    if (faders[i].layer.empty())
-      Scale(factors[i], image);
+    if (faders[i].layer.empty())  // the fader of all light
+      image = ScaleAllLight(image, factors[i]);
     else
       mixed.push_back({faders[i].layer, factors[i]});
   }
@@ -124,17 +107,24 @@ KeptFiles Keep(const EditableScene& scene, DeskSession& session, const std::vect
       FindFreeCopies(scene.Description().file, AllChanges(scene, EditsOf(scene, faders, factors)));
   KeptFiles kept;
   kept.notes = GlowsThatStay(faders, factors);
-  // All files are open before the first is committed, so that nothing is left behind if one of them cannot be written.
-  std::vector<std::unique_ptr<AtomicFile>> files;
-  for (const CopiedFile& copy : copies.files) {
-    AtomicFile& file = *files.emplace_back(std::make_unique<AtomicFile>(copy.path));
-    file.Write(copy.text.data(), copy.text.size());
-    kept.scenes.push_back(fs::absolute(copy.path));
+  // Files that are there already are removed if a later one cannot be written. Their names were unused.
+  std::vector<fs::path> written;
+  try {
+    for (const CopiedFile& copy : copies.files) {
+      AtomicFile file(copy.path);
+      file.Write(copy.text.data(), copy.text.size());
+      file.Commit();
+      written.push_back(copy.path);
+      kept.scenes.push_back(fs::absolute(copy.path));
+    }
+    session.WithFilm([&](const BuiltScene& built, const Film& film, int samplesPerPixel) {
+      WritePicture(copies.picture, built, film, samplesPerPixel, faders, factors);
+    });
+  } catch (...) {
+    std::error_code ignored;
+    for (const fs::path& file : written) fs::remove(file, ignored);
+    throw;
   }
-  session.WithFilm([&](const BuiltScene& built, const Film& film, int samplesPerPixel) {
-    WritePicture(copies.picture, built, film, samplesPerPixel, faders, factors);
-  });
-  for (const auto& file : files) file->Commit();
   kept.picture = fs::absolute(copies.picture);
   return kept;
 }

@@ -59,17 +59,17 @@ namespace {
 
 // Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
 constexpr double kRadiusInPixels = 1;
-// Bounds of the merging radius, in radii of the scene. Below the rounding of positions photons are found where they are
-// not, and nothing is merged; a wider radius would be a blur that never vanishes. Beyond the scene all are found.
-constexpr double kLeastRadius = 1e-7, kMostRadius = 2;
+// Upper bound of the merging radius, in radii of the scene: beyond it all photons are found.
+constexpr double kMostRadius = 2;
 
 }  // namespace
 
 float BidirectionalSample::MergeRadiusAt(double footprint) const {
   const PhotonPass& pass = *context.gather;
-  if (settings.photons.radius > 0) return pass.radius;
   const auto size = static_cast<double>(Lighting().SceneSphere().radius);
-  const double radius = kRadiusInPixels * std::sqrt(footprint) * static_cast<double>(pass.radiusScale);
+  const double radius = settings.photons.radius > 0
+                            ? static_cast<double>(pass.radius)
+                            : kRadiusInPixels * std::sqrt(footprint) * static_cast<double>(pass.radiusScale);
   return radius < kLeastRadius * size ? 0.0f : static_cast<float>(std::min(radius, kMostRadius * size));
 }
 
@@ -223,7 +223,7 @@ class CameraSide final : public PathVisitor {
 
   bool Scattered(const Subpath& path, const PathState&) override {
     const PathVertex& last = path.Last();
-    sample_.couldMerge = sample_.couldMerge || (last.CanMerge() && !last.scatteredDelta);
+    sample_.couldMerge = sample_.couldMerge || (sample_.merging && last.CanMerge() && !last.scatteredDelta);
     return true;
   }
   float Found() const override { return sample_.radiance.Average(); }
@@ -310,7 +310,9 @@ class CameraSide final : public PathVisitor {
     }
     sample_.continuesHere =
         !state.hasScatteredWidely && vertex.CanMerge() ? static_cast<double>(sample_.continuing) : 1.0;
-    if (sample_.seenDensity > 0 && !state.hasScatteredWidely) SetMerging(static_cast<double>(state.length));
+    // The radius grows along the path: where nothing is merged at the first vertex, nothing is merged later.
+    if (sample_.seenDensity > 0 && !state.hasScatteredWidely && (depth == 1 || sample_.merging))
+      SetMerging(static_cast<double>(state.length));
     if (sample_.merging) {
       AddDensities(path, sample_.settings.photons.volume, false, sample_.cameraDensities);
       if (depth == 1) sample_.cameraDensities[0].forward = sample_.seenDensity;

@@ -75,7 +75,8 @@ class NextEventTechnique final : public NextEventVisitor {
   // True if no other technique finds the light when subpaths are not connected: camera paths cannot hit it, and no
   // photon can be merged on the way, as on hair.
   bool IsFoundHereAlone(uint32_t light) const {
-    return !sample_.couldMerge && !vertex_.CanMerge() && !sample_.Lighting().CanBeHit(light);
+    const bool mergesHere = sample_.merging && vertex_.CanMerge();
+    return !sample_.couldMerge && !mergesHere && !sample_.Lighting().CanBeHit(light);
   }
 
   const BidirectionalSample& sample_;

@@ -13,8 +13,8 @@ namespace {
 // Radius of photons in media in the first pass by default, in pixel footprints.
 constexpr double kVolumeRadiusInPixels = 1;
 // A photon's radius is that of a pixel at this distance behind it, in radii of the media that scatter: contributions of
-// photons near the camera would otherwise be without bound, as 1 / distance². Not of the scene, beside which media may
-// be so small that photons would fall outside of them.
+// photons near the camera would otherwise be without bound, as 1 / distance². In radii of the scene, which may be much
+// larger than the media, photons would fall outside of them.
 constexpr double kNearInRadii = 0.25;
 
 BoundingSphere MediaSphereOf(const RenderScene& scene) {
@@ -49,7 +49,7 @@ PhotonSettings PhotonSettingsOf(const IntegratorInput& input) {
   photons.radius = settings.Number("radius");
   // Twice the scene's radius finds all photons; less than the rounding of positions finds none.
   const auto size = static_cast<double>(input.scene.lighting->SceneSphere().radius);
-  if (photons.radius > 0 && size > 0) photons.radius = std::clamp(photons.radius, 1e-7 * size, 2 * size);
+  if (photons.radius > 0 && size > 0) photons.radius = std::clamp(photons.radius, kLeastRadius * size, 2 * size);
   photons.volume = VolumeRadiusOf(input, photons.radius);
   photons.alpha = settings.Number("alpha");
   photons.lightPaths = static_cast<uint64_t>(std::max<int64_t>(settings.Integer("photons"), 0));
@@ -75,10 +75,11 @@ constexpr double kBeamWidth = 0.5;
 void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
   VolumeRadius& volume = photons.volume;
   const RenderScene& scene = input.scene;
-  const auto radius = static_cast<double>(volume.At(MediaSphereOf(scene).center));
+  const BoundingSphere sphere = MediaSphereOf(scene);
+  const auto radius = static_cast<double>(volume.At(sphere.center));
   volume.usesBeams.assign(scene.media.size(), 0);
   bool isUsed = false;
-  double depth = 0;  // of a flight across the scene
+  double depth = 0;  // optical, of half a flight across the media
   for (size_t i = 0; i < scene.media.size(); ++i) {
     const Medium& medium = *scene.media[i];
     if (!medium.IsHomogeneous() || !medium.Scatters()) continue;
@@ -86,7 +87,7 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
     if (!(radius * extinction < kMostRadiusInMeanFreePaths)) continue;
     volume.usesBeams[i] = 1;
     isUsed = true;
-    depth = std::max(depth, extinction * static_cast<double>(scene.lighting->SceneSphere().radius));
+    depth = std::max(depth, extinction * static_cast<double>(sphere.radius));
   }
   if (!isUsed) volume.usesBeams.clear();
   // A beam across the picture is in the pixels of a row, twice as wide as one; of as many light paths as pixels. Where

@@ -5,6 +5,10 @@
 
 namespace lampyr {
 
+// Least radius on surfaces, in radii of the scene. Below the rounding of positions photons are not where they seem to
+// be.
+constexpr double kLeastRadius = 1e-7;
+
 namespace photon_settings {
 
 inline const Setting kPhotons{.name = "photons",

@@ -21,16 +21,16 @@ double MostExtinction(const Medium& medium) {
   return majorants.empty() ? 0.0 : static_cast<double>(*std::max_element(majorants.begin(), majorants.end()));
 }
 
-// True if the camera may see the medium along straight lines.
-bool IsSeen(const RenderScene& scene, int32_t medium, const MediumSurfaces& surfaces) {
-  return surfaces.passesStraight || medium == scene.cameraMedium || medium == scene.exterior ||
-         medium == scene.cameraExterior || medium == scene.unbounded;
-}
-bool IsUnbounded(const RenderScene& scene, int32_t medium, const MediumSurfaces& surfaces) {
-  return surfaces.box.IsEmpty() || medium == scene.exterior || medium == scene.cameraExterior ||
-         medium == scene.unbounded || medium == scene.cameraMedium;
+// True if the medium fills the space around the camera, or around everything.
+bool IsAround(const RenderScene& scene, int32_t medium) {
+  return medium == scene.exterior || medium == scene.cameraExterior || medium == scene.unbounded ||
+         medium == scene.cameraMedium;
 }
 
+// True if the camera may see the medium along straight lines.
+bool IsSeen(const RenderScene& scene, int32_t medium, const MediumSurfaces& surfaces) {
+  return surfaces.passesStraight || IsAround(scene, medium);
+}
 // Equiangular density, for a point at `height` above the line that sees the range under `angle`. `x`: from its foot.
 double EquiangularDensity(double height, double angle, double x) {
   return height / (angle * (height * height + x * x));
@@ -45,9 +45,11 @@ std::optional<BoundingSphere> SphereOfMedia(const RenderScene& scene, bool seenA
   for (size_t i = 0; i < scene.media.size(); ++i) {
     const auto index = static_cast<int32_t>(i);
     if (!scene.media[i]->Scatters() || (seenAlone && !IsSeen(scene, index, allSurfaces[i]))) continue;
+    const bool isAround = IsAround(scene, index);
+    if (allSurfaces[i].box.IsEmpty() && !isAround) continue;  // named, but not used
     isAny = true;
     box.Add(allSurfaces[i].box);
-    isUnbounded = isUnbounded || IsUnbounded(scene, index, allSurfaces[i]);
+    isUnbounded = isUnbounded || isAround;
   }
   if (!isAny) return std::nullopt;
   if (isUnbounded) return scene.lighting->SceneSphere();

@@ -163,8 +163,9 @@ bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint&
   // surfaces.
   const float cosine = glm::dot(point.Ng, toRay);
   if (cosine * glm::dot(emission.normal, toRay) < 0) return false;
-  // A line passes a triangle once. Distances are not compared there: where it is slender, the rounding of barycentric
-  // coordinates moves points along it by much more than their errors.
+  // A line passes a side of a triangle, of a bilinear patch and of a quadric once. Distances are not compared there:
+  // where a triangle is slender, the rounding of barycentric coordinates moves points along it by much more than their
+  // errors. Surfaces of light types (Surface()) may be passed several times.
   constexpr float kSameNormal = 0.999f;
   const bool isOnPatch =
       !scene_->fronts[photon.light].light->Surface() && static_cast<int>(point.patch) == emission.patchIndex;

@@ -53,7 +53,7 @@ std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const Rende
   const std::string refusal = IntegratorRefusal(scene, settings.integrator);
   if (!refusal.empty()) {
     const std::string text = "integrator " + settings.integrator + ": " + refusal;
-    if (settings.integratorWhere.file) throw Error(settings.integratorWhere, text);
+    if (settings.integratorWhere.file) throw UsageError(settings.integratorWhere, text);
     throw UsageError(text);
   }
   return IntegratorOf(settings.integrator)
@@ -83,6 +83,7 @@ RenderSettings VariantOf(const RenderSettings& settings, const std::string& name
   }
   size_t colon = name.find(':');
   variant.integrator = name.substr(0, colon);
+  variant.integratorWhere = {};
   variant.counts.reset();
   const IntegratorType* type = FindIntegrator(variant.integrator);
   if (!type) {

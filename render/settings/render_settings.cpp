@@ -467,9 +467,13 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
         diagnostics.Warn(parameters.WhereOf(name), "\"" + std::string(name) + "\" has no effect on a spherical camera");
     }
     if (!(frame.filmMargin.x < static_cast<float>(frame.width) &&
-          frame.filmMargin.y < static_cast<float>(frame.height)))
-      throw Error(description.pixelFilter.where,
-                  "the radius of the filter of a spherical camera must be less than its image, which goes all around");
+          frame.filmMargin.y < static_cast<float>(frame.height))) {
+      const FileLocation& filter = description.pixelFilter.where;
+      throw Error(
+          filter.file ? filter : statement.where,
+          "the radius of the filter of a spherical camera must be less than its image, which goes all around: " +
+              std::to_string(frame.width) + " by " + std::to_string(frame.height) + " pixels");
+    }
     camera = MakeSphericalCamera(
         frame, mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
   } else {

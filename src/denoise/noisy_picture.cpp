@@ -214,7 +214,7 @@ bool ReadHalves(const Image& image, NoisyPicture& picture) {
   picture.shares[0] = share != image.metadata.end()
                           ? std::atof(share->second.c_str())
                           : static_cast<double>(SamplesInHalf(static_cast<uint32_t>(samples))) / samples;
-  // A crop may have samples of one half alone.
+  // A picture of some parts of a render (merge --partial) may have samples of one half alone.
   if (!(picture.shares[0] > 0.01 && picture.shares[0] < 0.99)) return false;
   picture.shares[1] = 1 - picture.shares[0];
   const auto first = static_cast<float>(1 / picture.shares[0]), second = static_cast<float>(1 / picture.shares[1]);

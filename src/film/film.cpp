@@ -572,7 +572,9 @@ ErrorParts Film::PartsOfError(double largestSample) const {
   // find a contribution: pixels have no variance until the first splat.
   constexpr double kLong = 4096;
   const bool isBlack = varianceSum == 0 && meanLuminance == 0;
-  if (isBlack && samples / n >= kLong) return {};
+  const double lightPathsPerPixel =
+      static_cast<double>(lightPaths_) / (static_cast<double>(fullWidth_) * static_cast<double>(fullHeight_));
+  if (isBlack && std::max(samples / n, lightPathsPerPixel) >= kLong) return {};
   if (bound == 0 && biasSquare == 0 && !(isBlack && lightPaths_ > 0)) return {};  // black or constant
   if (!(meanLuminance > 0)) return {std::numeric_limits<double>::infinity(), 0};
   return {1.959963984540054 * std::sqrt(bound / n) / meanLuminance, std::sqrt(biasSquare) / meanLuminance};

@@ -264,8 +264,9 @@ class Film {
   // means) / mean luminance. The mean variance is the upper end of its own confidence interval ([Fay97], see film.cpp),
   // because it is uncertain if a few bright samples make up most of it. `largestSample`: luminance of the brightest
   // sample that may not have occurred yet. Infinite with fewer than 2 samples per pixel, or fewer than 2 light paths. 0
-  // without variance if `largestSample` is 0, and for an image that is still black after 4096 samples per pixel. The
-  // bias is that of merging photons (film_bias.cpp), 0 unless its estimates are kept.
+  // without variance if `largestSample` is 0, but for a black image that light paths are splatted to; and for an image
+  // that is still black after 4096 samples, or light paths, per pixel. The bias is that of merging photons
+  // (film_bias.cpp), 0 unless its estimates are kept.
   ErrorParts PartsOfError(double largestSample = 0) const;
   double RelativeError(double largestSample = 0) const { return PartsOfError(largestSample).Both(); }
 

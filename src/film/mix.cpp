@@ -135,6 +135,16 @@ void AddUp(const std::vector<std::string>& groups, const std::vector<LayerFactor
   }
 }
 
+// `mixed`, with what its picture and groups do not hold scaled, too, where all light of `image` has the factor. Throws
+// an Error if the result is not finite.
+Image WithOthersScaled(const Image& image, const Color& factor, const std::vector<std::string>& groups, Image& mixed) {
+  ScaleOthers(factor, groups, mixed);
+  CheckIsFinite(image, mixed);
+  return Kept(mixed, [&](const std::string& channel) {
+    return !IsOfParts(channel) && (IsGray(factor) || !IsBandLayer(channel));
+  });
+}
+
 // Adds the change of a layer to the picture.
 void AddDifference(const LayerFactor& each, Image& mixed) {
   const std::array<size_t, 3> picture = ChannelsOfLayer(mixed, ""), layer = ChannelsOfLayer(mixed, each.layer);
@@ -217,12 +227,13 @@ Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   const bool isUniform = std::all_of(groups.begin(), groups.end(),
                                      [&](const std::string& group) { return FactorOf(group, factors) == factor; });
   if (!isUniform) return WithoutUnknown(mixed, groups);
-  if (factor == Color(1.0f)) return mixed;
-  ScaleOthers(factor, groups, mixed);
-  CheckIsFinite(image, mixed);
-  return Kept(mixed, [&](const std::string& channel) {
-    return !IsOfParts(channel) && (IsGray(factor) || !IsBandLayer(channel));
-  });
+  return factor == Color(1.0f) ? mixed : WithOthersScaled(image, factor, groups, mixed);
+}
+
+Image ScaleAllLight(const Image& image, const Color& factor) {
+  Image scaled = image;
+  Scale(factor, "", scaled);
+  return WithOthersScaled(image, factor, {}, scaled);
 }
 
 }  // namespace lampyr

@@ -29,4 +29,7 @@ std::vector<std::string> GroupLayers(const Image& image);
 // that the image does not have, or that is named twice, and for results that are not finite.
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors);
 
+// The picture with all of its light multiplied by the factor, and the layers that are valid for it.
+Image ScaleAllLight(const Image& image, const Color& factor);
+
 }  // namespace lampyr

@@ -46,8 +46,8 @@ class PixelFilter {
   Vector2 Radius() const { return {settings_.radiusX, settings_.radiusY}; }
 
  private:
-  // The filter along one axis. For kinds without closed-form inversion, [-radius, radius] is divided at `edges` into
-  // parts with equal shares of ∫|f|: one look-up maps a random number to an offset.
+  // The filter along one axis. For kinds without closed-form inversion, [-radius, radius], but for the ends with 1e-7 of
+  // ∫|f|, is divided at `edges` into parts with equal shares of ∫|f|: one look-up maps a random number to an offset.
   struct Axis {
     float radius = 0;
     float integral = 1;        // of f

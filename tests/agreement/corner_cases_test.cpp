@@ -204,24 +204,34 @@ std::vector<Corner> Corners() {
       "\"point3 P\" [ -500 0 500  500 0 500  -500 0 -500  500 0 -500 ]\nAttributeEnd\n";
   const std::string smallFog =
       Film("LookAt 0 0.3 4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n") +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.05 0.05 0.05 ] \"rgb "
+      "WorldBegin\nMakeNamedMedium \"unused\" \"string type\" \"homogeneous\"\n"
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.05 0.05 0.05 ] \"rgb "
       "sigma_s\" [ 0.3 0.3 0.3 ]\nAttributeBegin\nMediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" "
       "\"float radius\" 2\nAttributeEnd\nMediumInterface \"fog\"\nMaterial \"diffuse\"\nShape \"bilinearmesh\" "
       "\"point3 P\" [ -1 -0.5 1  1 -0.5 1  -1 -0.5 -1  1 -0.5 -1 ]\nLightSource \"point\" \"rgb I\" [ 2 2 2 ] "
       "\"point3 from\" [ 0 0.5 0 ]\nMediumInterface \"\"\n" +
       farGround;
-  // A pixel shows less than the rounding of positions at the scene's edge.
-  const std::string detail =
-      Film("LookAt 0.08 0.06 0.1  0 0.01 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n") +
-      "WorldBegin\nMaterial \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [ -1 0 1  1 0 1  -1 0 -1  1 0 -1 ]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [ -1e6 -1 1e6  1e6 -1 1e6  -1e6 -1 -1e6  1e6 -1 -1e6 ]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [ -0.05 0 -0.03  0.05 0 -0.03  -0.05 0.1 -0.03  0.05 0.1 -0.03 ]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] Translate 0 0.03 0 Rotate -90 1 0 0 LightSource \"disk\" "
-      "\"rgb color\" [ 10 10 10 ] \"float radius\" 0.005\n";
+  // A pixel shows less than the rounding of positions at the scene's edge, which is `size` away.
+  const auto detail = [](const std::string& size, const std::string& pane) {
+    return Film("LookAt 0.08 0.06 0.1  0 0.01 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n") + "WorldBegin\n" +
+           pane +
+           "Material \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [ -1 0 1  1 0 1  -1 0 -1  1 0 -1 ]\n"
+           "Shape \"bilinearmesh\" \"point3 P\" [ -" +
+           size + " -1 " + size + " " + size + " -1 " + size + " -" + size + " -1 -" + size + " " + size + " -1 -" +
+           size +
+           " ]\nShape \"bilinearmesh\" \"point3 P\" [ -0.05 0 -0.03  0.05 0 -0.03  -0.05 0.1 -0.03  0.05 0.1 -0.03 ]\n"
+           "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] Translate 0 0.03 0 Rotate -90 1 0 0 LightSource "
+           "\"disk\" "
+           "\"rgb color\" [ 10 10 10 ] \"float radius\" 0.005\n";
+  };
+  const char* const pane =
+      "AttributeBegin\nMaterial \"thindielectric\" Translate 0.0794 0.0596 0.0993\nShape \"sphere\" \"float radius\" "
+      "0.0005\nAttributeEnd\n";
   return {
       {"tube_of_slender_triangles", SlenderTube(), {"path", "light", "bdpt", "vcm"}, 512},
-      {"small_fog_above_a_far_ground", smallFog, {"bdpt", "vcm"}},
-      {"detail_of_a_large_scene", detail, {"path", "bdpt", "vcm", "sppm"}},
+      {"small_fog_above_a_far_ground", smallFog, {"bdpt", "vcm", "sppm"}, 256},
+      {"detail_of_a_large_scene", detail("1e6", ""), {"path", "bdpt", "vcm", "sppm"}},
+      {"detail_behind_a_pane", detail("1e4", pane), {"path", "bdpt", "vcm"}},
       {"mixed_with_glass_between_lamps", BetweenLamps(glass), {"path", "bdpt", "vcm"}, 256, 0.1, 0.02},
       {"mixed_with_a_slope_between_lamps", BetweenLamps(slope), {"path", "bdpt", "vcm"}, 256, 0.1, 0.02},
       {"vertex_that_no_face_uses", unused, {"path", "light", "bdpt", "sppm"}},

@@ -90,6 +90,9 @@ TEST(Cameras, WhatASphericalOneCannotDoIsTold) {
   };
   EXPECT_THAT(warningsOf("Camera \"spherical\" \"float lensradius\" 2"),
               testing::HasSubstr("test.pbrt:1:20: warning: \"lensradius\" has no effect on a spherical camera"));
+  for (const char* name : {"float focaldistance", "float frameaspectratio"})
+    EXPECT_THAT(warningsOf("Camera \"spherical\" \"" + std::string(name) + "\" 2"),
+                testing::HasSubstr("has no effect on a spherical camera"));
   EXPECT_EQ(warningsOf("Camera \"spherical\" \"string mapping\" \"equirectangular\""), "");
   const std::string wide =
       "Camera \"spherical\" Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"

@@ -59,7 +59,7 @@ TEST_F(Cli, AnIntegratorThatCannotRenderTheSceneIsToldWhereItIsNamed) {
         "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
         "  Integrator \"light\"\nWorldBegin\nShape \"sphere\"\n");
   const Outcome named = Run("render lens.pbrt -o out.exr --spp 1");
-  EXPECT_EQ(named.exitCode, 1) << named.output;
+  EXPECT_EQ(named.exitCode, 2) << named.output;
   EXPECT_NE(named.output.find("lens.pbrt:3:3: error: integrator light:"), std::string::npos) << named.output;
   const Outcome asked = Run("render lens.pbrt --integrator light -o out.exr --spp 1");
   EXPECT_EQ(asked.exitCode, 2) << asked.output;

@@ -301,6 +301,10 @@ Shape "sphere"
   const Color before = plain.RgbAt(12, 7), after = mixed.RgbAt(12, 7);
   EXPECT_GT(before.r, 0);
   EXPECT_EQ(after, before * Color(4, 2, 1));
+  const auto variance = [](const Image& image) {
+    return image.At(12, 7, static_cast<size_t>(image.ChannelIndex("variance.R")));
+  };
+  EXPECT_FLOAT_EQ(variance(mixed), 16 * variance(plain));
   EXPECT_EQ(desk.PostJson("set", {{"factors", {{4, 4, 4}}}}).at("notes").size(), 1u);
 }
 

@@ -114,6 +114,9 @@ TEST(Splats, ABlackPictureHasNoErrorUntilLightPathsHadTheirChance) {
   for (int i = 0; i < 4; ++i) lists[0].StartPath();
   film.AddSplats(box, lists, 1);
   EXPECT_TRUE(std::isinf(film.RelativeError()));
+  for (int i = 4; i < 4096; ++i) lists[0].StartPath();
+  film.AddSplats(box, lists, 1);
+  EXPECT_EQ(film.RelativeError(), 0);
   Film seen(1, 1, {0, 0, 1, 1});
   for (int i = 0; i < 4; ++i) seen.Pixel(0, 0).Add(Color(), 1);
   EXPECT_EQ(seen.RelativeError(), 0);
