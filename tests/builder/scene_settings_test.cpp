@@ -83,7 +83,8 @@ TEST(Warnings, AreGivenForWhatIsNotDone) {
 TEST(Cameras, WhatASphericalOneCannotDoIsTold) {
   const auto warningsOf = [](const std::string& text) {
     Diagnostics diagnostics(Diagnostics::Mode::Collect);
-    BuildScene(ParseScene(text + "\nWorldBegin Shape \"sphere\"", "test.pbrt", diagnostics), {}, true, diagnostics);
+    BuildScene(ParseScene(text + "\nWorldBegin LightSource \"infinite\"", "test.pbrt", diagnostics), {}, true,
+               diagnostics);
     std::string told;
     for (const std::string& each : diagnostics.Warnings()) told += each + "\n";
     return told;
