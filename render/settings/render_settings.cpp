@@ -398,6 +398,30 @@ void CheckAccelerator(const SceneDescription& scene, Diagnostics& diagnostics) {
   scene.accelerator.parameters.CheckAllUsed({}, known, diagnostics);
 }
 
+std::unique_ptr<Camera> BuildSphericalCamera(const SceneDescription& description, const CameraFrame& frame,
+                                             Diagnostics& diagnostics) {
+  const StatementDescription& statement = description.camera;
+  const ParameterList& parameters = statement.parameters;
+  const std::string mapping = parameters.GetString("mapping", "equalarea");
+  if (mapping != "equalarea" && mapping != "equirectangular") {
+    throw Error(parameters.WhereOf("mapping"),
+                "there is no mapping \"" + mapping + "\"" + DidYouMean(mapping, {"equalarea", "equirectangular"}));
+  }
+  for (const char* name : {"lensradius", "focaldistance", "screenwindow", "frameaspectratio"}) {
+    if (parameters.Find(name))
+      diagnostics.Warn(parameters.WhereOf(name), "\"" + std::string(name) + "\" has no effect on a spherical camera");
+  }
+  if (!(frame.filmMargin.x < static_cast<float>(frame.width) &&
+        frame.filmMargin.y < static_cast<float>(frame.height))) {
+    const FileLocation& filter = description.pixelFilter.where;
+    throw Error(filter.file ? filter : statement.where,
+                "the radius of the filter of a spherical camera must be less than its image, which goes all around: " +
+                    std::to_string(frame.width) + " by " + std::to_string(frame.height) + " pixels");
+  }
+  return MakeSphericalCamera(frame,
+                             mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
+}
+
 }  // namespace
 
 bool IsPictureEnding(const std::string& ending) {
@@ -456,26 +480,8 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
   } else if (type == "orthographic") {
     camera = MakeOrthographicCamera(frame, {lensRadius, focalDistance});
   } else if (type == "spherical") {
-    const std::string mapping = parameters.GetString("mapping", "equalarea");
-    if (mapping != "equalarea" && mapping != "equirectangular") {
-      throw Error(parameters.WhereOf("mapping"),
-                  "there is no mapping \"" + mapping + "\"" + DidYouMean(mapping, {"equalarea", "equirectangular"}));
-    }
     known.push_back("mapping");
-    for (const char* name : {"lensradius", "focaldistance", "screenwindow", "frameaspectratio"}) {
-      if (parameters.Find(name))
-        diagnostics.Warn(parameters.WhereOf(name), "\"" + std::string(name) + "\" has no effect on a spherical camera");
-    }
-    if (!(frame.filmMargin.x < static_cast<float>(frame.width) &&
-          frame.filmMargin.y < static_cast<float>(frame.height))) {
-      const FileLocation& filter = description.pixelFilter.where;
-      throw Error(
-          filter.file ? filter : statement.where,
-          "the radius of the filter of a spherical camera must be less than its image, which goes all around: " +
-              std::to_string(frame.width) + " by " + std::to_string(frame.height) + " pixels");
-    }
-    camera = MakeSphericalCamera(
-        frame, mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
+    camera = BuildSphericalCamera(description, frame, diagnostics);
   } else {
     throw Error(statement.where, "there is no Camera \"" + type + "\"" +
                                      DidYouMean(type, {"perspective", "orthographic", "spherical", "realistic"}));
