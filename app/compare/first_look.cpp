@@ -216,7 +216,7 @@ std::vector<PilotRun> Candidates(const BuiltScene& built) {
     run.isHinted = !IntegratorHints(built.scene, settings.integrator).empty();
     runs.push_back(run);
   };
-  // Of the integrators that gather photons, vcm has all techniques, and "auto" may have found the useful ones.
+  // Candidates that gather photons: vcm, which has all techniques, and "auto", which may have left out useless ones.
   for (const std::string& name : IntegratorNames()) {
     if (name == "vcm" || !GathersPhotons(name, built.settings.values)) add(name);
   }

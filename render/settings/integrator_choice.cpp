@@ -51,11 +51,8 @@ double SplatCount(const RenderSettings& settings) {
 
 std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const RenderSettings& settings) {
   const std::string refusal = IntegratorRefusal(scene, settings.integrator);
-  if (!refusal.empty()) {
-    const std::string text = "integrator " + settings.integrator + ": " + refusal;
-    if (settings.integratorWhere.file) throw UsageError(settings.integratorWhere, text);
-    throw UsageError(text);
-  }
+  if (!refusal.empty())
+    throw UsageError(settings.integratorWhere, "integrator " + settings.integrator + ": " + refusal);
   return IntegratorOf(settings.integrator)
       .create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values,
                settings.counts.get(), SplatCount(settings)});
