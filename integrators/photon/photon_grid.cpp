@@ -79,14 +79,14 @@ uint32_t PhotonGrid::FetchCells(const Point3& center, float radius, std::array<u
     for (uint32_t y = first[1]; y <= last[1]; ++y) {
       for (uint32_t x = first[0]; x <= last[0]; ++x) {
         cells[count] = MortonCode(x, y, z);
-        lampyr::Prefetch(&slots_[SlotOf(cells[count++])]);
+        Prefetch(&slots_[SlotOf(cells[count++])]);
       }
     }
   }
   return count;
 }
 
-void PhotonGrid::Prefetch(const Point3& center, float radius) const {
+void PhotonGrid::PrefetchCells(const Point3& center, float radius) const {
   std::array<uint32_t, kMostCells> cells;
   if (slots_.Size() > 0) FetchCells(center, radius, cells);
 }
@@ -101,7 +101,7 @@ bool PhotonGrid::Find(const Point3& center, float radius, std::vector<uint32_t>&
   for (uint32_t i = 0; i < count; ++i) {
     const Slot slot = Lookup(cells[i]);
     if (slot.count == 0) continue;
-    lampyr::Prefetch(&positions_[slot.first]);
+    Prefetch(&positions_[slot.first]);
     runs[occupied++] = slot;
     photons += slot.count;
   }

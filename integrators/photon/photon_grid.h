@@ -51,7 +51,7 @@ class PhotonGrid {
   PhotonGrid(const MortonFrame& frame, std::span<const SortItem> sorted, std::vector<Point3> positions);
 
   // Fetches into the cache the cells that Find reads first, while other work goes on.
-  void Prefetch(const Point3& center, float radius) const;
+  void PrefetchCells(const Point3& center, float radius) const;
 
   // Sets `found` to the indices of all photons nearer than `radius` (scene units), and `distances` to the squares of
   // their distances. False, without a result, if a tree is likely to be faster: where the radius spans many cells, or

@@ -49,7 +49,7 @@ class PhotonMap {
 
   // Fetches into the cache what Find reads first, while other work goes on.
   void PrefetchCells(const Point3& position, float radius) const {
-    if (search_) grid_.Prefetch(position - center_, radius);
+    if (search_) grid_.PrefetchCells(position - center_, radius);
   }
 
   // The photons in media whose balls a ray passes on [0, tMax), in an order that depends on the photons alone. Valid
