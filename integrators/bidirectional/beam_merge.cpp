@@ -56,6 +56,7 @@ void AddFlight(const SampleContext& context, const VolumeRadius& radius, double 
   start.direction = flight.line.direction;
   start.diffuse = state.diffuse;
   start.specular = state.specular;
+  start.channels = flight.channels;
   start.pdfDirection = state.pdfDirection;
   start.depth = static_cast<uint16_t>(count + 1);
   thread_local PathLabels labels;
@@ -93,8 +94,8 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   const FlightStart& start = map.Beams().StartOf(beam);
   const auto t = static_cast<float>(crossing.tBeam);
   const Color density = beam.step.DensityAt(t);
-  const double through = MeanOf(density);
-  if (!(through > 0)) return false;
+  const double through = MeanOf(density), reached = OverChannels(start.channels, density);
+  if (!(through > 0) || !(reached > 0)) return false;
   PathVertex& light = made.vertex;
   static_cast<Vertex&>(light) = vertex;
   light.toPrevious = -Vector3(start.direction);
@@ -114,7 +115,7 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
     SetWeights({start.weight, start.previousReverse, start.scatteredDelta, start.pdfDirection}, light.factors,
                EdgeDensity(1, squared), EdgeDensity(start.geometryTerm, squared), connects, light);
   }
-  light.diffuse *= beam.tint * beam.step.TransmittanceAt(t) / static_cast<float>(through);
+  light.diffuse *= beam.tint * beam.step.TransmittanceAt(t) / static_cast<float>(reached);
   SetDensities(map, start, made);
   Photon& photon = made.photon;
   photon.toPrevious = light.toPrevious;

@@ -31,6 +31,7 @@ struct FlightStart {
   Color diffuse,
       specular;            // throughput that leaves, LightingServices::FluxUnit over the density; of a light unfiltered
   Color extinction{1.0f};  // at the start (Vertex::extinction)
+  Color channels{1.0f / 3};  // Flight::channels
   SolidAngleDensity pdfDirection;
   PartialWeight weight;         // of the vertex
   AreaDensity previousReverse;  // of the vertex before it, by the event

@@ -67,8 +67,10 @@ float PathLength(float extinction, float distance) {
 class Tracker {
  public:
   // `steps`: receives the parts of the ray; null: not wanted.
-  Tracker(const FineLine& line, int channel, float uDistance, uint64_t seed, std::vector<BeamStep>* steps)
-      : line_(line), channel_(channel), depth_(DepthOf(uDistance)), rng_(seed), steps_(steps) {}
+  // `channels`: probabilities with which `channel` was chosen; not used where nothing collides.
+  Tracker(const FineLine& line, int channel, const Color& channels, float uDistance, uint64_t seed,
+          std::vector<BeamStep>* steps)
+      : line_(line), channel_(channel), channels_(channels), depth_(DepthOf(uDistance)), rng_(seed), steps_(steps) {}
 
   // Follows a span. `collides`: stops at a collision, and returns true.
   bool Follow(const Medium& medium, int32_t index, double tMin, double tMax, bool collides) {
@@ -99,7 +101,7 @@ class Tracker {
     if (wantsEmission && !here.emission.IsBlack()) {
       const Color reach(PathLength(extinction.r, length), PathLength(extinction.g, length),
                         PathLength(extinction.b, length));
-      emission += value * here.emission * reach / static_cast<float>(MeanOf(density));
+      emission += value * here.emission * reach / static_cast<float>(OverChannels(channels_, density));
     }
     const float sampled = ChannelOf(extinction, channel_);
     bool isCollision = false;
@@ -161,7 +163,7 @@ class Tracker {
       const MediumCoefficients here = medium.At(Point3(line_.start + from * line_.direction));
       const Color extinction = here.Extinction();
       if (wantsEmission && !here.emission.IsBlack())
-        emission += value * here.emission / (segment.majorant * static_cast<float>(MeanOf(density)));
+        emission += value * here.emission / (segment.majorant * static_cast<float>(OverChannels(channels_, density)));
       if (collides && rng_.NextFloat() * segment.majorant < ChannelOf(extinction, channel_)) {
         at = here;
         t = from;
@@ -180,6 +182,7 @@ class Tracker {
 
   const FineLine& line_;
   const int channel_;
+  const Color channels_;
   float depth_;  // optical depth to the next tentative collision
   Rng rng_;
   std::vector<BeamStep>* const steps_;
@@ -225,8 +228,25 @@ Color BeamStep::DensityAt(float t) const {
   return scatters ? density * Transmittance(extinction, t - tMin) : density;
 }
 
-void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, uint32_t dimension,
-         bool wantsBeam, Flight& flight) {
+Color ChannelsOf(const Color& throughput) {
+  const float sum = throughput.r + throughput.g + throughput.b;
+  const bool isUsable = throughput.IsValid() && sum > 0 && sum < kInfinity;
+  return isUsable ? throughput / sum : Color(1.0f / 3);
+}
+
+namespace {
+
+// The channel at `u` of the cumulated probabilities. Never one of probability 0, whatever the rounding.
+int ChannelAt(const Color& channels, float u) {
+  if (u < channels.r) return 0;
+  if (u < channels.r + channels.g || !(channels.b > 0)) return channels.g > 0 ? 1 : 0;
+  return 2;
+}
+
+}  // namespace
+
+void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, const Color& throughput,
+         uint32_t dimension, bool wantsBeam, Flight& flight) {
   const RenderScene& scene = context.scene;
   auto& [spans, crossings] = BuffersOfWalks();
   FineLine line{start.position, Vector3d(ray.direction)};
@@ -253,7 +273,8 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const Edg
         MixBits(static_cast<uint64_t>(std::bit_cast<uint32_t>(u.x)) << 32 | std::bit_cast<uint32_t>(u.y));
     std::vector<BeamStep>& steps = ThreadSteps();
     steps.clear();
-    Tracker tracker(line, std::min(static_cast<int>(3 * u.y), 2), u.x, seed, wantsBeam ? &steps : nullptr);
+    flight.channels = ChannelsOf(throughput);
+    Tracker tracker(line, ChannelAt(flight.channels, u.y), flight.channels, u.x, seed, wantsBeam ? &steps : nullptr);
     tracker.wantsEmission = true;
     tracker.wantsTime = context.mediumTimes != nullptr;
     for (const MediumSpan& span : spans) {
@@ -273,7 +294,7 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const Edg
     flight.factors = {MeanOf(tracker.density * endExtinction), MeanOf(tracker.density * start.extinction),
                       MeanOf(tracker.density)};
     flight.beam = steps;
-    flight.passed = tracker.value / static_cast<float>(flight.factors.forward);
+    flight.passed = tracker.value / static_cast<float>(OverChannels(flight.channels, tracker.density * endExtinction));
   }
   flight.t = static_cast<float>(end);
   if (flight.isHit || flight.collidesWith) flight.end = line.start + end * line.direction;
@@ -288,7 +309,9 @@ std::optional<BeamPoint> Flight::PointAt(float at, int32_t inMedium) const {
     point.density = step.DensityAt(at);
     point.through = MeanOf(point.density);
     if (!(point.through > 0)) return std::nullopt;
-    point.passed = TintBefore(static_cast<double>(at)) * step.TransmittanceAt(at) / static_cast<float>(point.through);
+    const double reached = OverChannels(channels, point.density);
+    if (!(reached > 0)) return std::nullopt;
+    point.passed = TintBefore(static_cast<double>(at)) * step.TransmittanceAt(at) / static_cast<float>(reached);
     return point;
   }
   return std::nullopt;
@@ -308,7 +331,7 @@ namespace {
 Tracker Estimate(const SampleContext& context, const FineLine& line, std::span<const MediumSpan> spans, double end,
                  uint64_t decider) {
   Rng first(decider);
-  Tracker tracker(line, 0, first.NextFloat(), MixBits(decider + 1), nullptr);
+  Tracker tracker(line, 0, Color(1.0f / 3), first.NextFloat(), MixBits(decider + 1), nullptr);
   tracker.wantsTime = context.mediumTimes != nullptr;
   for (const MediumSpan& span : spans) {
     if (!(span.tMin < end)) break;

@@ -7,9 +7,12 @@
 // in weights. What remains is
 //   walk         the mean over the channels of Π (σ_n / σ̄) · σ_t at a vertex that is a collision
 //   connection   1
-// with Π (σ_n / σ̄) in the value of both. Of a homogeneous medium the product is the transmittance. A walk chooses the
-// channel by which it samples an edge evenly, so that the mean is the density, and all channels are weighted by it
-// (balance heuristic, one sample; [Wilkie14]).
+// with Π (σ_n / σ̄) in the value of both. Of a homogeneous medium the product is the transmittance.
+//
+// A walk samples an edge by one channel, chosen in proportion to its throughput, and all channels are divided by the
+// density over the choice (balance heuristic, one sample; [Wilkie14]). The throughput then stays bounded: chosen
+// evenly, the densest of three channels would be multiplied by 3 or by almost 0 at each collision. Weights need a
+// density that follows from the path alone, whoever made it, and take the mean over the channels.
 //
 // A medium without scattering makes no collisions: its transmittance is a factor of the value alone.
 #pragma once
@@ -57,10 +60,19 @@ struct BeamStep {
 
 // A point of a beam.
 struct BeamPoint {
-  Color passed;        // factor on the throughput up to there, over the probability that a walk gets there
+  Color passed;        // factor on the throughput up to there, over the probability that the walk gets there
   Color density;       // that probability, by the channel that samples the distance
   double through = 1;  // their mean
 };
+
+// The probabilities of the channels by which a walk samples a distance: in proportion to its throughput.
+Color ChannelsOf(const Color& throughput);
+// A density over the choice of the channel. `density`: by channel.
+inline double OverChannels(const Color& channels, const Color& density) {
+  return static_cast<double>(channels.r) * static_cast<double>(density.r) +
+         static_cast<double>(channels.g) * static_cast<double>(density.g) +
+         static_cast<double>(channels.b) * static_cast<double>(density.b);
+}
 
 // A point of a medium on a ray, as a walk that collided there would have it.
 struct MediumPoint {
@@ -83,7 +95,8 @@ struct Flight {
   MediumCoefficients coefficients;       // at the collision
   Color passed{1.0f};                    // factor on the throughput: tints, and transmittance over its density
   EdgeFactors factors;
-  Color emission;  // radiance of media on the way, at the start of the ray; an estimate
+  Color channels{1.0f / 3};  // ChannelsOf the throughput with which the flight begins
+  Color emission;            // radiance of media on the way, at the start of the ray; an estimate
   FineLine line;
   // The parts of the line in media up to the surface, in order, whether the walk collides or not; valid until the next
   // flight of the thread.
@@ -113,11 +126,11 @@ struct EdgeEnd {
   }
 };
 
-// Traces a ray from `start`. `dimension`: sampler dimension of the pair of random numbers for distance and channel.
-// `wantsBeam`: Flight::beam is wanted. A ray that is rejected (GeometryScene::RejectedRays) carries nothing:
-// Flight::passed is 0.
-void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, uint32_t dimension,
-         bool wantsBeam, Flight& flight);
+// Traces a ray from `start`. `throughput`: of the path. `dimension`: sampler dimension of the pair of random numbers
+// for distance and channel. `wantsBeam`: Flight::beam is wanted. A ray that is rejected (GeometryScene::RejectedRays)
+// carries nothing: Flight::passed is 0.
+void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, const Color& throughput,
+         uint32_t dimension, bool wantsBeam, Flight& flight);
 
 // The point at `t` of a flight's line. nullopt: nothing scatters there, or no light passes. The transmittance is
 // estimated anew, independently of where the walk has collided. `decider`: random bits that decide nothing else.

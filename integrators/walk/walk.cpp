@@ -230,7 +230,7 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
                              PathState& state, Subpath& path, PathVisitor& visitor, Flight& flight) {
   const bool isFromLight = settings.mode == TransportMode::Importance;
   const auto count = static_cast<int>(path.Count());
-  Fly(context, state.ray, kinds, StartOf(context, state, path),
+  Fly(context, state.ray, kinds, StartOf(context, state, path), state.Throughput(),
       settings.dimensions.OfFlight(isFromLight ? count + 1 : count), settings.wantsBeams, flight);
   if (settings.seesFlights && !flight.spans.empty()) visitor.Flew(path, state, flight);
   if (!flight.emission.IsBlack() && !context.IsCounted(state.isDispersed)) visitor.Glowed(path, state, flight.emission);

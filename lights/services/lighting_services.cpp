@@ -40,8 +40,10 @@ BoundingSphere SphereAround(const GeometryScene& geometry, const std::vector<Pla
   };
   hold(*media.unboundedAt);
   for (const PlacedLight& placed : lights) {
-    for (const float time : {0.0f, 1.0f}) {
-      const LightTransform transform = placed.motion ? placed.At(time) : placed.transform;
+    // Between the keys of a motion the place is on a line.
+    const size_t keys = placed.motion ? placed.motion->Keys().size() : 1;
+    for (size_t i = 0; i < keys; ++i) {
+      const LightTransform transform = placed.motion ? placed.At(placed.motion->TimeOf(i)) : placed.transform;
       LightContext context;
       context.transform = &transform;
       context.scene = geometry.GetBoundingSphere();

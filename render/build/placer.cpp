@@ -8,25 +8,12 @@
 
 namespace lampyr {
 
-namespace {
-
-// The transform times, as fractions of the time that the camera's shutter is open.
-MotionTimes ReadMotionTimes(const SceneDescription& description) {
-  const StatementDescription& camera = description.camera;
-  const double open = camera.parameters.GetFloat("shutteropen", 0),
-               close = camera.parameters.GetFloat("shutterclose", 1);
-  if (!(close > open)) throw Error(camera.where, "\"shutterclose\" must be after \"shutteropen\"");
-  return {(description.shutterOpen - open) / (close - open), (description.shutterClose - open) / (close - open)};
-}
-
-}  // namespace
-
 AnimatedTransform ToAnimated(const Placement& placement, const char* what, const FileLocation& where) {
   return AnimatedTransform(placement.start, placement.end, what, where);
 }
 
 void Placer::ReadTimes(const SceneDescription& description) {
-  times_ = ReadMotionTimes(description);
+  times_ = MotionTimesOf(description);
 }
 
 Transform Placer::StillPlacement(const ShapeDescription& shape) const {

@@ -444,9 +444,6 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
                                     const Transform& worldToRender, Diagnostics& diagnostics) {
   const StatementDescription& statement = description.camera;
   const ParameterList& parameters = statement.parameters;
-  if (description.cameraToWorld.IsAnimated()) {
-    diagnostics.Warn(statement.where, "a moving camera is not supported yet; its place at shutter open is used");
-  }
   CameraFrame frame;
   frame.cameraToRender = worldToRender * description.cameraToWorld.start;
   frame.width = settings.width;

@@ -93,11 +93,12 @@ Image Kept(const Image& image, const std::function<bool(const std::string&)>& is
 // True for channels that are valid for the unmixed light alone: halves of the samples, the picture before denoising,
 // strategies and errors.
 bool IsOfParts(const std::string& channel) {
-  for (const char* prefix :
-       {"half.", "noisy.", "weighted.", "unweighted.", "relativeError", "bias.", kSplatShareChannel}) {
-    if (channel.starts_with(prefix)) return true;
-  }
-  return false;
+  for (const char* layer : {"half.", "noisy.", "bias."})
+    if (channel.starts_with(layer)) return true;
+  // A light group may be called "weighted", but strategies have another dot: "weighted.s2-t3.R".
+  for (const char* strategies : {"weighted.", "unweighted."})
+    if (channel.starts_with(strategies) && channel.find('.') != channel.rfind('.')) return true;
+  return channel == "relativeError" || channel == kSplatShareChannel;
 }
 
 // Drops the channels that are unknown after a change of single layers, and all layers besides `known`.
@@ -174,7 +175,8 @@ std::vector<std::string> ColorLayers(const Image& image) {
     const std::string layer = channel.substr(0, channel.size() - 2);
     constexpr std::array<const char*, 5> kOthers = {"variance", "half", "noisy", "Albedo", "bias"};
     if (std::find(kOthers.begin(), kOthers.end(), layer) != kOthers.end() || layer.find('.') != std::string::npos ||
-        layer.starts_with("Crypto") || image.ChannelIndex(layer + ".G") < 0 || image.ChannelIndex(layer + ".B") < 0)
+        layer.starts_with("CryptoObject") || layer.starts_with("CryptoMaterial") ||
+        image.ChannelIndex(layer + ".G") < 0 || image.ChannelIndex(layer + ".B") < 0)
       continue;
     layers.push_back(layer);
   }

@@ -82,6 +82,10 @@ class Motion {
   float Begin() const { return begin_; }
   float End() const { return end_; }
   const std::vector<Affine>& Keys() const { return keys_; }
+  // Shutter time of a key.
+  float TimeOf(size_t key) const {
+    return begin_ + (end_ - begin_) * static_cast<float>(key) / static_cast<float>(keys_.size() - 1);
+  }
 
  private:
   float begin_, end_;

@@ -44,9 +44,6 @@ std::shared_ptr<const Medium> MakeMedium(const MediumDescription& description, c
                                          MemoryBudget& memory, Diagnostics& diagnostics) {
   const ParameterList& parameters = description.medium.parameters;
   const FileLocation& where = description.medium.where;
-  if (description.placement.IsAnimated()) {
-    diagnostics.Warn(where, "media do not move, as in pbrt-v4: this one stays where it is when the shutter opens");
-  }
   const Transform renderFromMedium = renderFromWorld * description.placement.start;
   if (!renderFromMedium.IsAffine()) throw Error(where, "a medium cannot have a perspective transform");
   for (const MediumType& type : kTypes) {

@@ -1,5 +1,8 @@
-// Checks that need the whole scene: every name that is used is defined, and no object contains itself.
+// What needs the whole scene: every name that is used is defined, no object contains itself, and what cannot move stays
+// where it is when the shutter opens.
 #include "scene/scene_parser.h"
+
+#include "math/motion.h"
 
 namespace lampyr {
 
@@ -29,6 +32,35 @@ void SceneParser::CheckReferences() const {
     for (const InstanceDescription& instance : object.instances)
       CheckName(objects_, "object", instance.object, instance.where);
   }
+}
+
+MotionTimes MotionTimesOf(const SceneDescription& description) {
+  const StatementDescription& camera = description.camera;
+  const double open = camera.parameters.GetFloat("shutteropen", 0),
+               close = camera.parameters.GetFloat("shutterclose", 1);
+  if (!(close > open)) throw Error(camera.where, "\"shutterclose\" must be after \"shutteropen\"");
+  return {(description.shutterOpen - open) / (close - open), (description.shutterClose - open) / (close - open)};
+}
+
+// Camera, media and textures do not move.
+void SceneParser::StopWhatCannotMove() {
+  const auto stop = [&](Placement& placement, const char* what, const FileLocation& where, const char* warning) {
+    if (!placement.IsAnimated()) return;
+    diagnostics_.Warn(where, warning);
+    const double fraction = MotionTimesOf(scene_).FractionAt(0);
+    if (fraction >= 1) placement.start = placement.end;
+    if (fraction > 0 && fraction < 1)
+      placement.start = AnimatedTransform(placement.start, placement.end, what, where).At(fraction);
+    placement.end = placement.start;
+  };
+  stop(scene_.cameraToWorld, "a camera", scene_.camera.where,
+       "a moving camera is not supported yet; its place at shutter open is used");
+  for (MediumDescription& medium : scene_.media)
+    stop(medium.placement, "a medium", medium.medium.where,
+         "media do not move, as in pbrt-v4: this one stays where it is when the shutter opens");
+  for (TextureDescription& texture : scene_.textures)
+    stop(texture.placement, "a texture", texture.texture.where,
+         "moving textures are not supported: the placement at shutter open is used");
 }
 
 // Depth-first search without recursion: objects may be nested as deep as a file is long. Nested instances multiply, so

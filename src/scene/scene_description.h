@@ -13,7 +13,9 @@
 
 namespace lampyr {
 
-// Transforms from local to world space at shutter open and close, equal without motion.
+struct MotionTimes;
+
+// Transforms from local to world space at the start and the end of the transform times, equal without motion.
 struct Placement {
   Transform start, end;
   bool IsAnimated() const { return !(start == end); }
@@ -129,6 +131,9 @@ struct SceneDescription {
   std::vector<InstanceDescription> instances;
   double instanceCount = 0;  // including those nested in objects
 };
+
+// The transform times, as fractions of the time that the camera's shutter is open. Throws an Error.
+MotionTimes MotionTimesOf(const SceneDescription& description);
 
 // Reads a scene file (plain or gzipped) and its includes. Throws an Error with file, line and column; warnings go to
 // `diagnostics`.

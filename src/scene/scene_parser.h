@@ -169,6 +169,7 @@ class SceneParser {
 
   // scene_checks.cpp
   void CheckReferences() const;
+  void StopWhatCannotMove();
   void CountInstances();
 };
 

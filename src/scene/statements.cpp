@@ -63,6 +63,7 @@ SceneDescription SceneParser::Parse(std::string text) {
   CheckScopesClosed(0);
   if (!inWorld_) throw Error(tokens_.Next().where, "the scene ends before WorldBegin: it describes no world");
   CheckReferences();
+  StopWhatCannotMove();
   CountInstances();
   scene_.file = file_;
   scene_.contentHash = tokens_.HashOfAll();

@@ -36,12 +36,7 @@ const TextureType& FindType(const TextureDescription& description) {
               "\"" + description.texture.type + "\" is no texture type" + DidYouMean(description.texture.type, names));
 }
 
-Affine RenderToTexture(const TextureDescription& description, const Transform& worldToRender,
-                       Diagnostics& diagnostics) {
-  if (description.placement.IsAnimated()) {
-    diagnostics.Warn(description.texture.where,
-                     "moving textures are not supported: the placement at shutter open is used");
-  }
+Affine RenderToTexture(const TextureDescription& description, const Transform& worldToRender) {
   const Transform textureToRender = worldToRender * description.placement.start;
   if (textureToRender.IsSingular()) throw Error(description.texture.where, "the texture's transform is singular");
   const Transform inverse = textureToRender.Inverse();
@@ -72,7 +67,7 @@ void TextureLibrary::Add(const TextureDescription& description, const Transform&
     throw Error(description.texture.where, "there is a " + kind + " texture \"" + description.name + "\" already");
   }
   const TextureType& type = FindType(description);
-  TextureRequest request{description, *this, RenderToTexture(description, worldToRender, diagnostics),
+  TextureRequest request{description, *this, RenderToTexture(description, worldToRender),
                          SpectrumRole::Albedo, diagnostics};
   Nesting nesting;
   beingMade_ = &nesting;

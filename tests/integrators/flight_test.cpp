@@ -32,7 +32,7 @@ TEST(Flight, OfARejectedRayCarriesNothing) {
   const EdgeEnd start{Point3d(1, 2, 3), 0};
   for (const Vector3& direction : {Vector3(0, 0, 0), Vector3(kInfinity, 0, 0), Vector3(0, std::nanf(""), 1)}) {
     Flight flight;
-    Fly(context, {Point3(1, 2, 3), direction}, visibility::kIndirect, start, 0, false, flight);
+    Fly(context, {Point3(1, 2, 3), direction}, visibility::kIndirect, start, Color(1.0f), 0, false, flight);
     EXPECT_FALSE(flight.isHit || flight.collidesWith);
     EXPECT_TRUE(flight.passed.IsBlack());
     EdgeFactors factors;

@@ -35,7 +35,7 @@ struct Flown {
   explicit Flown(const BuiltScene& built, bool isFirst = true) : context{built.scene, sampler, 0, counts} {
     sampler.StartPixelSample(1, 0, 0);
     ray = {Point3(-0.6f, 2.1f, 2.9f), glm::normalize(Vector3(1, 0.05f, 0.1f))};
-    Fly(context, ray, visibility::kCamera, {Point3d(ray.origin)}, 0, false, flight);
+    Fly(context, ray, visibility::kCamera, {Point3d(ray.origin)}, Color(1.0f), 0, false, flight);
     segment = LitSegment(built.scene, ray, flight, isFirst);
   }
   Sampler sampler{SamplerKind::Independent, 1};

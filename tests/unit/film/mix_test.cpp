@@ -63,6 +63,23 @@ TEST(Mix, NeedsThePicture) {
   EXPECT_EQ(MixLayers(partial, {{"key", Color(2.0f)}, {"rest", Color(2.0f)}}).RgbAt(0, 0), Color(8.0f));
 }
 
+// Names that begin like those of other layers.
+TEST(Mix, GroupsMayBeCalledAlmostAnything) {
+  for (const char* name : {"weighted", "unweighted", "splatShare", "splatShares", "relativeErrors", "CryptoKey"}) {
+    const std::string group = name;
+    Image image = Picture(4, {"weighted.s2-t3.R", "weighted.s2-t3.G", "weighted.s2-t3.B", "relativeError"});
+    for (std::string& channel : image.channels)
+      if (channel.starts_with("key.")) channel = group + channel.substr(3);
+    image.metadata["lampyr.lightGroups"] = group + ",rest";
+    const Image mixed = MixLayers(image, {{group, Color(2, 0, 1)}});
+    EXPECT_EQ(mixed.RgbAt(0, 0), Color(5, 3, 4)) << name;
+    EXPECT_GE(mixed.ChannelIndex(group + ".R"), 0) << name;
+    EXPECT_EQ(mixed.ChannelIndex("weighted.s2-t3.R"), -1) << name;
+    EXPECT_EQ(mixed.ChannelIndex("relativeError"), -1) << name;
+    EXPECT_EQ(MixLayers(mixed, {{"rest", Color(2.0f)}}).RgbAt(0, 0), Color(8, 6, 7)) << name;
+  }
+}
+
 TEST(Mix, OfOtherLayersThePictureGetsTheDifference) {
   EXPECT_EQ(MixLayers(Picture(4), {{"caustic", Color(3.0f)}}).RgbAt(0, 0), Color(4.5f));
 }
