@@ -29,16 +29,17 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   return hit;
 }
 
-// The scene's bounding sphere. With an unbounded medium it also holds the camera and all lights with a position.
+// The scene's bounding sphere. With an unbounded medium it also holds MediaAround::unboundedHolds and all lights with a
+// position.
 BoundingSphere SphereAround(const GeometryScene& geometry, const std::vector<PlacedLight>& lights,
                             const MediaAround& media) {
   BoundingSphere sphere = geometry.GetBoundingSphere();
-  if (!media.unboundedAt) return sphere;
+  if (media.unboundedHolds.empty()) return sphere;
   constexpr float kMargin = 1.001f;
   const auto hold = [&sphere](const Point3& point) {
     sphere.radius = std::max(sphere.radius, kMargin * glm::distance(point, sphere.center));
   };
-  hold(*media.unboundedAt);
+  for (const Point3& point : media.unboundedHolds) hold(point);
   for (const PlacedLight& placed : lights) {
     // Between the keys of a motion the place is on a line.
     const size_t keys = placed.motion ? placed.motion->Keys().size() : 1;

@@ -87,9 +87,9 @@ struct SegmentSample {
 struct MediaAround {
   bool glow = false;     // some emit light
   double glowPower = 0;  // roughly, W: mean of the channels
-  // A medium without a boundary is around the scene. It fills the scene's sphere, which then holds this point (the
-  // camera) and all lights with a position.
-  std::optional<Point3> unboundedAt;
+  // Not empty if a medium without a boundary is around the scene. It fills the scene's sphere, which then holds these
+  // points (the camera, and the corners of the medium if it is a grid) and all lights with a position.
+  std::vector<Point3> unboundedHolds;
 };
 
 class LightingServices {

@@ -352,7 +352,12 @@ MediaAround Builder::MediaAroundLights(const Point3& eye) const {
     around.glow = true;
     around.glowPower += RoughPowerOf(*media[i], static_cast<int32_t>(i), *built_.scene.geometry);
   }
-  if (!description_.cameraMedium.empty() || media_->Exterior() != kVacuum) around.unboundedAt = eye;
+  if (description_.cameraMedium.empty() && media_->Exterior() == kVacuum) return around;
+  around.unboundedHolds = {eye};
+  for (const int32_t medium : media_->Unbounded()) {
+    const std::vector<Point3> corners = media[static_cast<size_t>(medium)]->Corners();
+    around.unboundedHolds.insert(around.unboundedHolds.end(), corners.begin(), corners.end());
+  }
   return around;
 }
 

@@ -193,6 +193,15 @@ void SceneMedia::LookAround(const GeometryScene& geometry, const Ray& eye) {
   if (!description_.media.empty()) around_ = FindMediumAround(geometry, eye.origin, 0, eye.direction);
 }
 
+std::vector<int32_t> SceneMedia::Unbounded() const {
+  std::vector<int32_t> media;
+  if (Exterior() != kVacuum) media.push_back(Exterior());
+  const bool isBounded = around_.medium && !around_.isOfOpaque;
+  if (!description_.cameraMedium.empty() && !isBounded)
+    media.push_back(IndexOf(description_.cameraMedium, description_.camera.where));
+  return media;
+}
+
 void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& lightPlaces, RenderScene& scene) {
   if (description_.media.empty()) return;
   const FileLocation& where = description_.camera.where;

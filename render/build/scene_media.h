@@ -51,6 +51,8 @@ class SceneMedia {
   void LookAround(const GeometryScene& geometry, const Ray& eye);
   // The medium in which rays leave the scene, as far as the boundaries say it.
   int32_t Exterior() const { return around_.exterior.value_or(kVacuum); }
+  // The media that no boundary keeps from the scene's end.
+  std::vector<int32_t> Unbounded() const;
 
  private:
   struct Place {

@@ -18,6 +18,16 @@ class BoxMedium : public Medium {
     return AtInside(p);
   }
   const MajorantGrid* Majorants() const final { return &majorants_; }
+  std::vector<Point3> Corners() const final {
+    const Affine toRender = toSpace_.Inverse();
+    const Bounds3& box = majorants_.Bounds();
+    std::vector<Point3> corners;
+    for (int i = 0; i < 8; ++i) {
+      corners.push_back(toRender.Point(
+          {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z}));
+    }
+    return corners;
+  }
   // From render space to the space of the box.
   const Affine& ToSpace() const { return toSpace_; }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "math/transform.h"
 #include "math/vec.h"
@@ -32,6 +33,8 @@ class Medium {
   // Upper bounds of the extinction, the largest of its channels; null: the medium is homogeneous, and At is the same
   // everywhere.
   virtual const MajorantGrid* Majorants() const { return nullptr; }
+  // The corners of the box of a grid, in render space; none: homogeneous.
+  virtual std::vector<Point3> Corners() const { return {}; }
   // This medium at the wavelengths of a pass. `self`: a pointer to this medium.
   virtual std::shared_ptr<const Medium> AtWavelengths(const std::shared_ptr<const Medium>& self,
                                                       const std::shared_ptr<const Wavelengths>& wavelengths) const;

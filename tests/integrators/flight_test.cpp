@@ -23,6 +23,20 @@ BuiltScene Fog(const std::string& scattering) {
                "\"sphere\"\nLightSource \"infinite\"\n");
 }
 
+// A lamp on a pendulum is higher in the middle of its swing than at either end.
+TEST(Flight, AnEndlessMediumReachesWhereverALightMoves) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const BuiltScene built = BuildScene(
+      ParseScene("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"\" \"fog\"\n"
+                 "Camera \"perspective\" WorldBegin MediumInterface \"fog\" Shape \"sphere\"\n"
+                 "Translate 0 6 0 ActiveTransform StartTime Rotate -88 0 0 1 ActiveTransform EndTime Rotate 88 0 0 1\n"
+                 "ActiveTransform All LightSource \"point\" \"point3 from\" [0 6 0]\n",
+                 "flight.pbrt", diagnostics),
+      {}, true, diagnostics);
+  // The shape, around which render space lies, has the radius 1; the top is 12 away.
+  EXPECT_GE(built.scene.lighting->SceneSphere().radius, 11.9f);
+}
+
 TEST(Flight, OfARejectedRayCarriesNothing) {
   const BuiltScene fog = Fog("0.01");
   Sampler sampler(SamplerKind::Independent, 1);

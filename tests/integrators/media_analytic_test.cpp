@@ -90,6 +90,27 @@ std::string Plate() {
          "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 3  -1 1 3  1 -1 3  1 1 3] AttributeEnd\n";
 }
 
+// A grid needs no boundary: it is all there, wherever shapes, camera and lights are.
+TEST(MediaClosedForms, GridWithoutABoundary) {
+  const auto mean = [](const std::string& boundary) {
+    const std::string scene =
+        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\nTranslate -0.5 -0.5 2\n"
+        "MakeNamedMedium \"gas\" \"string type\" \"uniformgrid\" \"rgb sigma_s\" [0 0 0] \"rgb sigma_a\" [1 1 1] "
+        "\"float density\" [2]\nIdentity\n" +
+        std::string(boundary.empty() ? "MediumInterface \"\" \"gas\"\n" : "") +
+        "LookAt 0 0 0  0 0 1  0 1 0\nCamera \"perspective\" \"float fov\" 10\nIntegrator \"path\"\nWorldBegin\n"
+        "LightSource \"infinite\"\nTranslate 0 -2 0 Shape \"sphere\" \"float radius\" 0.1\n" +
+        boundary;
+    return MeanOf(RenderText(scene, 1024).image);
+  };
+  const MeanValue without = mean(""),
+                  with = mean(
+                      "Identity Material \"interface\" MediumInterface \"gas\" \"\" Translate 0 0 2.5 Shape "
+                      "\"sphere\" \"float radius\" 1.5\n");
+  EXPECT_LT(without.mean, 0.5);
+  EXPECT_NEAR(without.mean, with.mean, 4.5 * std::hypot(without.standardError, with.standardError));
+}
+
 TEST_P(MediaAnalytic, SlabBeforeALamp) {
   // e^(-σ_t d) of the light that is not scattered.
   const Radiance extinction = {0.4, 1, 2.5};

@@ -197,6 +197,45 @@ TEST(Motion, TransformTimesAndShutter) {
   }
 }
 
+// Camera, media and textures stay where they are when the shutter opens, which may be within the transform times.
+TEST(Motion, WhatCannotMoveIsPlacedAtShutterOpen) {
+  const auto scene = [](bool moves, const std::string& camera, const std::string& inWorld) {
+    // A camera turns around the world: half way it is not half turned in its place.
+    const bool turns = camera != "camera";
+    const std::string turn = "Translate 0.4 0 0.2\n" + std::string(turns ? "Rotate 40 0.2 1 0\n" : ""),
+                      back = "Translate -0.4 0 0.2\n" + std::string(turns ? "Rotate -40 0.2 1 0\n" : "");
+    const std::string motion =
+        "ActiveTransform StartTime\n" + turn + "ActiveTransform EndTime\n" + back + "ActiveTransform All\n";
+    const std::string middle = "Translate 0 0 0.2\n", placed = moves ? motion : middle;
+    std::string text = "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 12\n" +
+                       std::string(moves ? "TransformTimes -1 1\n" : "") + (camera == "camera" ? placed : "") +
+                       "LookAt 0 0.5 -4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 45\nIntegrator \"path\"\n"
+                       "WorldBegin\nLightSource \"infinite\"\nAttributeBegin\n";
+    if (inWorld == "medium") {
+      text += placed +
+              "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float density\" [9 1] "
+              "\"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] \"rgb sigma_s\" [0 0 0] \"rgb sigma_a\" [1 1 1]\n"
+              "AttributeEnd AttributeBegin\nMediumInterface \"m\" \"\" Material \"interface\"\n"
+              "Shape \"sphere\" \"float radius\" 2\n";
+    } else if (inWorld == "texture") {
+      text += placed +
+              "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3 \"rgb tex1\" [0.1 0.1 0.1] \"rgb "
+              "tex2\" [0.9 0.9 0.9]\n"
+              "AttributeEnd AttributeBegin\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"\n";
+    } else {
+      text += "Translate 0.7 0.2 0 Shape \"sphere\"\n";
+    }
+    return text + "AttributeEnd\n";
+  };
+  for (const char* what : {"camera", "medium", "texture"}) {
+    const MeanValue moved = MeanOf(RenderText(scene(true, what, what), 256).image);
+    const Pixels a = PixelsOf(RenderText(scene(true, what, what), 256).image),
+                 b = PixelsOf(RenderText(scene(false, what, what), 256).image);
+    EXPECT_GT(moved.mean, 0.1) << what;
+    EXPECT_LT(Distance(a, b), 0.02 * moved.mean) << what;
+  }
+}
+
 TEST(Motion, AnyShutterOutsideOfTheMotionIsStill) {
   const Scene scene = Scenes().front();
   for (const bool after : {false, true}) {
