@@ -16,7 +16,8 @@ constexpr int kPassTimes = -2;                            // in the place of the
 
 // Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
 // time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified, whatever
-// the sampler of the pixels: there are as few as passes.
+// the sampler of the pixels: there are as few as passes. `seed` and `pass` are of the whole render: the stages of an
+// adaptive one share a sequence.
 float PassTime(uint64_t seed, uint32_t pass) {
   Sampler sampler(SamplerKind::Sobol, seed);
   sampler.StartPixelSample(0, kPassTimes, pass);
@@ -98,7 +99,7 @@ class BothPaths {
   // Traces the pixels from `round` on, as many as the chunks take. Without `withCamera`: light paths for their photons
   // only.
   void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
-    const float passTime = wanted_ && pass_.scene.hasMotion ? PassTime(pass_.Seed(), index - pass_.Offset()) : 0;
+    const float passTime = wanted_ && pass_.scene.hasMotion ? PassTime(pass_.settings.seed, index) : 0;
     ParallelFor(chunks_, pass_.threads, [&](int chunk) {
       uint64_t begin = std::min(round + static_cast<uint64_t>(chunk) * chunkPaths_, end);
       uint64_t chunkEnd = std::min(begin + chunkPaths_, end);

@@ -50,6 +50,19 @@ size_t CountSegments(const CurveParameters& p) {
                            " of degree " + std::to_string(p.degree));
 }
 
+// The normal at an end of a ribbon's segment. Along the curve it has no meaning, and Embree would leave out the
+// segment: the part of the other end's normal that is across the curve is taken then, or any direction across.
+Normal3 NormalAcross(const Vector3& tangent, const Normal3& normal, const Normal3& other) {
+  constexpr float kLeastSine = 1e-3f;
+  const Vector3 along = SafeNormalize(tangent, Vector3(0.0f, 0.0f, 1.0f));
+  for (const Normal3& n : {normal, other}) {
+    const Vector3 across = Vector3(n) - along * glm::dot(Vector3(n), along);
+    if (LengthSquared(across) < kLeastSine * kLeastSine) continue;
+    return n == normal ? n : Normal3(glm::normalize(across));
+  }
+  return Frame::FromNormal(Normal3(along)).x;
+}
+
 void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
   if (p.normals.size() != segments + 1) {
     throw Error(p.where, "curve: a ribbon of " + std::to_string(segments) + " segments needs " +
@@ -62,14 +75,19 @@ void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
     if (!(length > 0) || !std::isfinite(length)) throw Error(p.where, "curve: a normal is zero or not finite");
     normals.push_back(Vector3(transformed / length));
   }
-  for (size_t i = 0; i < segments; ++i) curves.segmentNormals.push_back({normals[i], normals[i + 1]});
+  for (size_t i = 0; i < segments; ++i) {
+    const auto segment = static_cast<uint32_t>(i);
+    const Vector3 along[2] = {CurveTangent(curves, segment, 0), CurveTangent(curves, segment, 1)};
+    curves.segmentNormals.push_back(
+        {NormalAcross(along[0], normals[i], normals[i + 1]), NormalAcross(along[1], normals[i + 1], normals[i])});
+  }
 }
 
 // Number of parts of a flat segment for which Embree's lines deviate by at most 1 % of `radius`: n lines deviate by at
 // most max |B''| / (8 n²).
 int PartsOfFlat(const Segment& b, double radius) {
   constexpr double kTolerance = 0.01;
-  constexpr int kMostParts = 16;
+  constexpr int kMostParts = 256;
   const double second = 6 * std::max(glm::length(b[0] - 2.0 * b[1] + b[2]), glm::length(b[1] - 2.0 * b[2] + b[3]));
   constexpr double kRounding = 1e-6;  // control points are floats
   if (!(second > kRounding * (glm::length(b[3] - b[0]) + glm::length(b[2] - b[1])))) return 1;

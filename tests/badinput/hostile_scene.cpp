@@ -127,15 +127,15 @@ TEST(HostileScene, SubdivisionIsCountedBeforeItIsMade) {
                 "besides the 96 MiB of the scene before them"));
 }
 
-// One flat curve of `segments` wild bends, each of which is divided into 16.
+// One flat curve of `segments` wild bends, each of which is divided into 256.
 std::string BentCurve(int segments, const std::string& type) {
   return "Shape \"curve\" \"string type\" \"" + type + "\" \"float width\" 1e-6 \"point3 P\" [ 0 0 0 " +
          Repeated("0 9 0  0 -9 1  0 0 0  ", static_cast<size_t>(segments)) + "]\n";
 }
 
 TEST(HostileScene, CurvesAreCountedBeforeTheyAreDivided) {
-  EXPECT_EQ(BuildError("WorldBegin\n" + BentCurve(1000, "flat"), {}, 8 * kMebibyte), "no error");
-  const std::string text = "WorldBegin\n" + BentCurve(10000, "flat");
+  EXPECT_EQ(BuildError("WorldBegin\n" + BentCurve(62, "flat"), {}, 8 * kMebibyte), "no error");
+  const std::string text = "WorldBegin\n" + BentCurve(625, "flat");
   EXPECT_EQ(BuildError("WorldBegin\n" + BentCurve(10000, "cylinder"), {}, 8 * kMebibyte), "no error");
   const PeakMemory peak;
   EXPECT_THAT(
@@ -145,11 +145,11 @@ TEST(HostileScene, CurvesAreCountedBeforeTheyAreDivided) {
   EXPECT_LT(peak.GrownBy(), 16);
   // Each would fit.
   EXPECT_THAT(
-      BuildError("WorldBegin\n" + Repeated(BentCurve(1000, "flat"), 3), {}, 8 * kMebibyte),
-      HasSubstr("scene.pbrt:4:1: error: the segments of this curve, 16000 where bent ones are divided, take 3.9 "
+      BuildError("WorldBegin\n" + Repeated(BentCurve(62, "flat"), 3), {}, 8 * kMebibyte),
+      HasSubstr("scene.pbrt:4:1: error: the segments of this curve, 15872 where bent ones are divided, take 3.9 "
                 "MiB of memory besides the 7.8 MiB of the scene before them"));
   // An object's curves are made once, however often it is there.
-  EXPECT_EQ(BuildError("WorldBegin\nObjectBegin \"o\"\n" + BentCurve(1000, "flat") + "ObjectEnd\n" +
+  EXPECT_EQ(BuildError("WorldBegin\nObjectBegin \"o\"\n" + BentCurve(62, "flat") + "ObjectEnd\n" +
                            Repeated("ObjectInstance \"o\"\n", 3),
                        {}, 8 * kMebibyte),
             "no error");
@@ -212,7 +212,8 @@ TEST(HostileScene, AbsurdNumbersAreRefusedOrHarmless) {
       {"WorldBegin LightSource \"spot\" \"point3 from\" [ 0 -2e18 0 ]", "\"from\" is farther out than 1e18"},
       {"WorldBegin Translate 0 0 2e18 LightSource \"point\"", "is placed farther out than 1e18"},
       {"WorldBegin Translate 0 0 2e18 LightSource \"goniometric\"", "is placed farther out than 1e18"},
-      {"WorldBegin Scale 1e20 1 1 Shape \"trianglemesh\" \"point3 P\" [ 1e38 0 0 1 0 0 0 1 0 ]", "farther out than 1e18"},
+      {"WorldBegin Scale 1e20 1 1 Shape \"trianglemesh\" \"point3 P\" [ 1e38 0 0 1 0 0 0 1 0 ]",
+       "farther out than 1e18"},
   };
   for (const Value& value : values) {
     const std::string error = BuildError(value.statement);

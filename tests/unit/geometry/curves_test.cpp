@@ -69,7 +69,8 @@ TEST(Curves, DividedSegmentsAreCountedAsTheyAreMade) {
     }
   }
   p.kind = CurveSet::Kind::Flat;
-  EXPECT_EQ(CountDividedSegments(p), 2 * 16u);
+  p.width0 = 1e-7f;
+  EXPECT_EQ(CountDividedSegments(p), 2 * 256u);
   p.points.pop_back();
   EXPECT_THROW(CountDividedSegments(p), Error);
 }
@@ -100,6 +101,34 @@ TEST(Curves, BentFlatOnesKeepTheirWidth) {
     ASSERT_NEAR(2 * point.uv.y - 1, side, 0.03f) << "u " << u;
     ASSERT_NEAR(point.uv.x, u, 0.01f) << "u " << u;
   }
+}
+
+// A normal along the curve says nothing about where a ribbon faces; the ribbon is there all the same.
+TEST(Curves, RibbonsWithANormalAlongThem) {
+  CurveParameters p;
+  p.kind = CurveSet::Kind::Ribbon;
+  p.points = {{0, -1, -0.3f}, {0, 0.25f, -0.3f}, {0, 0.875f, -0.15f}, {0, 0.875f, 0}};
+  p.width0 = p.width1 = 0.8f;
+  for (const Normal3& end : {Normal3(0, 0, 1), Normal3(0, 0.001f, 1)}) {
+    p.normals = {Normal3(0, 0, 1), end};
+    const CurveSet curves = MakeCurves(p);
+    const GeometryScene scene(SceneOf(ToShape(MakeCurves(p))));
+    int hits = 0;
+    for (int i = 0; i < 10; ++i) {
+      const float u = 0.05f + 0.06f * static_cast<float>(i);
+      const Ray ray{CurveAxis(curves, 0, u) + Vector3(0.2f, 0, -4), {0, 0, 1}};
+      RayHit hit;
+      hits += scene.Intersect(ray, visibility::kAll, hit) ? 1 : 0;
+    }
+    EXPECT_EQ(hits, 10) << end.y;
+  }
+  p.normals = {Normal3(0, 1, 0), Normal3(0, 0, 1)};  // along the curve at both ends
+  const GeometryScene scene(SceneOf(ToShape(MakeCurves(p))));
+  const Ray ray{{0, 0, -4}, {0, 0, 1}};
+  RayHit hit;
+  const Ray across{{-4, 0, -0.25f}, {1, 0, 0}};
+  RayHit other;
+  EXPECT_TRUE(scene.Intersect(ray, visibility::kAll, hit) || scene.Intersect(across, visibility::kAll, other));
 }
 
 TEST(Curves, StraightOnesAreHitWhereTheyAre) {
