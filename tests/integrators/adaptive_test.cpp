@@ -56,6 +56,37 @@ TEST_P(Adaptive, IsUnbiased) {
   EXPECT_EQ(adaptive.faults, 0u);
 }
 
+// Photons share the time of their pass. The times of all passes are stratified, and not those of each stage alone, with
+// which the streak of the lamp has ten times the variance.
+TEST(AdaptiveSampling, OfWhatMovesIsNotNoisierWithPhotons) {
+  constexpr const char* kMoving = R"(LookAt 0 2 -4  0 0.3 0  0 1 0
+Film "rgb" "integer xresolution" 12 "integer yresolution" 12
+PixelFilter "box"
+Camera "perspective" "float fov" 50
+Integrator "vcm" "integer maxdepth" 3 "float radius" 0.05 "float alpha" 1
+WorldBegin
+AttributeBegin
+ActiveTransform StartTime Translate -1.5 0.6 0 ActiveTransform EndTime Translate 1.5 0.6 0 ActiveTransform All
+AreaLightSource "diffuse" "rgb L" [6 5 4] Material "diffuse" "rgb reflectance" [0 0 0]
+Shape "sphere" "float radius" 0.1
+AttributeEnd
+Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
+Shape "trianglemesh" "point3 P" [-5 0 -5  5 0 -5  5 0 5  -5 0 5] "integer indices" [0 1 2 0 2 3]
+)";
+  const auto variance = [&](const RenderOverrides& overrides) {
+    const Replicas replicas = RenderReplicas(kMoving, "vcm", 16, 64, overrides);
+    double sum = 0;
+    for (int y = 0; y < 12; ++y) {
+      for (int x = 0; x < 12; ++x)
+        sum += replicas_internal::MomentsOf(replicas_internal::Means(replicas, 1, x, y, x + 1, y + 1)).variance;
+    }
+    return sum;
+  };
+  const double adaptive = variance(Adaptively()), uniform = variance({});
+  std::printf("[   info   ] variance, adaptive over uniform: %.2f\n", adaptive / uniform);
+  EXPECT_LT(adaptive, 2.5 * uniform);
+}
+
 // Weights of filters with negative lobes do not have one sign: stages of one sample in a pixel are no ratio by
 // themselves.
 TEST(AdaptiveSampling, IsUnbiasedWithNegativeWeights) {
