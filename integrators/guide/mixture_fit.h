@@ -19,7 +19,8 @@ struct GuideEvent {
 
 // The density α · guide + (1 - α) · unguided under which the events are most likely, each as often as its weight says:
 // by expectation maximisation, in which the unguided density is one component of the mixture. So the guide fits the
-// light that scattering alone samples poorly. Lobes are split from one to kLobes.
+// light that scattering alone samples poorly. Lobes are split from one to kLobes. The share is less than the most
+// likely α, because variance counts and not likelihood.
 struct MixtureFit {
   DirectionMixture mixture;
   float share = 0;  // α in [0, kMostShare]; 0: not guided
