@@ -8,17 +8,35 @@
 
 namespace lampyr {
 
-// Radiance of a sky in a direction, and the density of sampling that direction.
+// What a sky lights, in its local space (LightContext::receiverNormal). Without a normal, directions are sampled as
+// photons are.
+struct SkyReceiver {
+  Vector3 normal{0.0f};  // unit, or 0
+  bool isTransmissive = false;
+
+  bool HasNormal() const { return LengthSquared(normal) > 0; }
+};
+
+// Estimated mean of max(0, cosθ), or of |cosθ| where light counts from both sides, over directions that spread around a
+// mean m: `cosine` is n · m, `variance` is 1 - |m|². The same estimate as in light selection (selection/importance.h).
+inline float MeanCosine(float cosine, float variance, bool bothSides) {
+  const float root = std::sqrt(cosine * cosine + 0.25f * variance);
+  return bothSides ? root : 0.5f * (root + cosine);
+}
+
+// Radiance of a sky in a direction, and the density of sampling that direction: of a photon, and of a sample for a
+// receiver.
 struct SkyPoint {
   Color radiance;
   PdfSolidAngle density;
+  PdfSolidAngle densityDirect;
 };
 
 // A direction sampled by a sky, in its local space. `isInside`: radiance and density are constant within the rounding
 // of the direction, so that `seen` is valid and no second lookup is needed.
 struct SkySample {
   Vector3 local{0.0f};
-  SkyPoint seen{Color(0.0f), PdfSolidAngle(0)};
+  SkyPoint seen{Color(0.0f), PdfSolidAngle(0), PdfSolidAngle(0)};
   bool isInside = false;
 };
 

@@ -77,6 +77,12 @@ struct LightContext {
   // The patch to sample, if the caller has selected one; densities are then conditional on it. kAnyPatch: the light
   // samples a patch, and densities include its probability.
   int patch = kAnyPatch;
+  // The receiver of GenerateSamples and EvaluateSamples: its unit shading normal, on the side from which light counts,
+  // or 0 if light counts from all directions alike; and whether light from the other side counts, too. pdfDirect of
+  // lights at infinity may depend on them, and so may GetIncidentRadianceEstimate at a point: an estimate of the
+  // irradiance of that receiver then. Nothing else may.
+  Normal3 receiverNormal{0.0f};
+  bool receiverIsTransmissive = false;
   // True if pdfEmit, pdfEmitDirection and solidAngleToArea are wanted, too; otherwise they are 0.
   bool bidirectional = false;
 };
@@ -211,8 +217,8 @@ class Light {
   // The light's own surface, or null.
   virtual const IntersectableLight* Surface() const { return nullptr; }
 
-  // Estimated irradiance at P on a surface that faces the light, mean of the channels. Cheap; positive wherever the
-  // light can contribute.
+  // Estimated irradiance at P on a surface that faces the light, or has the normal context.receiverNormal if the light
+  // makes use of that; mean of the channels. Cheap; positive wherever the light can contribute.
   virtual float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const = 0;
 
   // Estimated irradiance along the ray segment from `origin` along the unit `direction`, and the part of [0, length]

@@ -1,5 +1,6 @@
-// Properties of infinite lights. Their radiance may differ from place to place (a window does that): densities of
-// directions are tested at several receivers, those of emission along the lines that photons take.
+// Properties of infinite lights. Their radiance may differ from place to place (a window does that), and pdfDirect with
+// the normal of the receiver: densities of directions are tested at several receivers, those of emission along the
+// lines that photons take.
 #include "math/frame.h"
 #include "suite/checks.h"
 #include "suite/direction_source.h"
@@ -17,7 +18,7 @@ class InfiniteChecker {
   InfiniteChecker(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report)
       : subject_(subject),
         light_(*subject.light),
-        scene_(subject.context.scene),
+        scene_(subject_.context.scene),
         radius_(static_cast<double>(subject.context.scene.radius)),
         isDelta_(subject.light->Kind() == LightKind::DeltaDirection),
         options_(options),
@@ -26,7 +27,13 @@ class InfiniteChecker {
         places_(MakeRngOfPlaces(subject, options)) {}
 
   void Run() {
-    for (const Receiver& receiver : Receivers()) CheckReceiver(receiver);
+    for (const auto& [receiver, normal, isTransmissive] : Receivers()) {
+      subject_.context.receiverNormal = normal;
+      subject_.context.receiverIsTransmissive = isTransmissive;
+      CheckReceiver(receiver);
+    }
+    subject_.context.receiverNormal = Normal3(0.0f);
+    subject_.context.receiverIsTransmissive = false;
     CheckPhotons();
     for (int i = 0; i < 6; ++i) CheckStartsGivenDirection(i);
     if (!isDelta_) CheckEmissionDirections();
@@ -34,7 +41,19 @@ class InfiniteChecker {
   }
 
  private:
-  std::vector<Receiver> Receivers() const;
+  struct OrientedReceiver {
+    Receiver place;
+    Normal3 normal{0.0f};
+    bool isTransmissive = false;
+  };
+  std::vector<OrientedReceiver> Receivers() const;
+  // Cosine by which light from there counts at the receiver; 1 without a normal.
+  double CosineTo(const Vector3d& direction) const {
+    const Normal3& normal = subject_.context.receiverNormal;
+    if (!(LengthSquared(normal) > 0)) return 1;
+    const double cosine = glm::dot(Vector3d(normal), direction);
+    return subject_.context.receiverIsTransmissive ? std::abs(cosine) : std::max(cosine, 0.0);
+  }
   void CheckReceiver(const Receiver& receiver);
   void CheckDirectionsAt(const Receiver& receiver);
   void CheckEstimates(const Receiver& receiver, bool arrives);
@@ -53,7 +72,7 @@ class InfiniteChecker {
   }
   std::string Case(const std::string& suffix) const { return subject_.caseName + suffix; }
 
-  const SuiteSubject& subject_;
+  SuiteSubject subject_;  // with the normal of the receiver
   const Light& light_;
   const BoundingSphere& scene_;
   double radius_;
@@ -64,13 +83,20 @@ class InfiniteChecker {
 };
 
 // Receivers throughout the scene: before and behind a window, near its plane and far from it.
-std::vector<Receiver> InfiniteChecker::Receivers() const {
+std::vector<InfiniteChecker::OrientedReceiver> InfiniteChecker::Receivers() const {
   const auto at = [&](double x, double y, double z) {
     return Point3(Point3d(scene_.center) + radius_ * Vector3d(x, y, z));
   };
-  return {{"centre", scene_.center},       {"above", at(0.02, 0.03, 0.6)}, {"below", at(-0.05, 0.04, -0.7)},
-          {"right", at(0.55, -0.1, 0.2)},  {"left", at(-0.6, 0.15, -0.1)}, {"front", at(0.1, -0.5, -0.3)},
-          {"behind", at(-0.2, 0.65, 0.3)}, {"rim", at(0.57, 0.57, -0.57)}, {"near", at(0.03, -0.02, 0.04)}};
+  const auto unit = [](double x, double y, double z) { return Normal3(glm::normalize(Vector3d(x, y, z))); };
+  return {{{"centre", scene_.center}},
+          {{"above", at(0.02, 0.03, 0.6)}, unit(0.1, -0.2, 1)},
+          {{"below", at(-0.05, 0.04, -0.7)}, unit(0.2, 0.1, -1)},
+          {{"right", at(0.55, -0.1, 0.2)}, unit(1, 0.6, 0.3), true},
+          {{"left", at(-0.6, 0.15, -0.1)}, unit(-1, 0.3, -0.2)},
+          {{"front", at(0.1, -0.5, -0.3)}},
+          {{"behind", at(-0.2, 0.65, 0.3)}, unit(0.1, -0.3, -0.8), true},
+          {{"rim", at(0.57, 0.57, -0.57)}},
+          {{"near", at(0.03, -0.02, 0.04)}, unit(0.4, 1, 0.5)}};
 }
 
 double InfiniteChecker::SampleMismatch(const LightSample& sample, const Point3& P) const {
@@ -88,7 +114,7 @@ void InfiniteChecker::CheckReceiver(const Receiver& receiver) {
   for (int i = 0; i < options_.samples / 2; ++i) {
     const auto sample = light_.GenerateSamples(RandomContext(subject_, rng_), P);
     if (!sample) continue;
-    arrives = true;
+    arrives = arrives || CosineTo(Vector3d(sample->direction)) > 0;
     consistency = std::max(consistency, SampleMismatch(*sample, P));
     multipliers = std::max(multipliers, MultiplierMismatch(subject_, *sample));
     const LightHit hit = HitAlong(sample->direction, P);
@@ -117,7 +143,7 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
       [&](const Vector3d& direction) -> Integrands {
         const auto e = light_.EvaluateSamples(subject_.context, HitAlong(Rounded(direction), P), P);
         if (!e || IsBlack(*e)) return {};
-        return {Value(e->pdfDirect), Emitted(subject_, *e)};
+        return {Value(e->pdfDirect), Emitted(subject_, *e) * CosineTo(direction)};
       },
       rng_, options_.effort* DirectionQuadrature::kBudget);
   Estimate share, fluence;
@@ -132,7 +158,8 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
     context.u = {x[0], x[1]};
     context.uDirection = {x[2], x[3]};
     const auto sample = light_.GenerateSamples(context, P);
-    return sample ? Emitted(subject_, *sample) / Value(sample->pdfDirect) : 0.0;
+    if (!sample) return 0.0;
+    return Emitted(subject_, *sample) * CosineTo(Vector3d(sample->direction)) / Value(sample->pdfDirect);
   });
   const std::string where = Case(" " + receiver.name);
   const std::string words = "receiver \"" + receiver.name + "\": ";

@@ -22,9 +22,9 @@ constexpr double kPriorEvents = 0.3;
 constexpr double kFewestEvents = 12;
 // Most of the weight of a region that one event may have.
 constexpr double kLargestPart = 0.1;
-// Of the most likely share. What the guide sends walks to is found at once, what scattering finds is noisier and needs
-// more samples than its light says ([Rath20]); and a share that is too large makes the throughputs of many bounces
-// large. Squared error of `path` in scenes/door with factors of 1, 0.7, 0.5: 1, 0.75, 0.75; in lamp: 1, 0.98, 1.1.
+// Factor on the most likely share. The most likely share is too large: it weighs directions by their radiance, and not
+// by the larger variance of those that only scattering finds ([Rath20]); and it makes the throughputs of long paths
+// vary. Squared error of `path` in scenes/door with factors of 1, 0.7, 0.5: 1, 0.75, 0.75; in lamp: 1, 0.98, 1.1.
 constexpr double kOfLikeliest = 0.7;
 // A guide with a smaller share is dropped: it would not repay its evaluation.
 constexpr double kLeastShare = 0.02;
@@ -124,7 +124,7 @@ class Fit {
     }
     const double share = std::min(kOfLikeliest * share_, static_cast<double>(kMostShare));
     MixtureFit fit{Mixture(), static_cast<float>(share)};
-    if (share_ < kLeastShare || !fit.mixture.IsValid()) return {};
+    if (share < kLeastShare || !fit.mixture.IsValid()) return {};
     return fit;
   }
 

@@ -24,7 +24,7 @@ namespace lampyr {
 
 // Must be incremented with every change of the interface that changes no size: a virtual function added or moved, a
 // number with a new meaning.
-inline constexpr int kPluginInterface = 2;
+inline constexpr int kPluginInterface = 3;
 
 // Text assembled at compile time, padded with zeros.
 struct PluginStamp {

@@ -5,9 +5,9 @@
 
 #include "lights/selection/emitter_list.h"
 #include "lights/selection/emitters.h"
+#include "lights/selection/far_lights.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_tree.h"
-#include "sampling/tables.h"
 
 namespace lampyr {
 
@@ -18,7 +18,6 @@ namespace {
 constexpr double kDefensiveShare = 0.05;
 // Lower bound of the fractions of lights at infinity and of lights with a position, if there are both.
 constexpr double kSmallestGroup = 0.05;
-constexpr float kLargest = 1e30f;
 
 template <class Search>
 class TreeSelector final : public LightSelector {
@@ -26,16 +25,9 @@ class TreeSelector final : public LightSelector {
   TreeSelector(std::span<const PlacedLight> lights, const BoundingSphere& scene, int threads)
       : emitters_(CollectEmitters(lights, scene, threads)),
         search_(emitters_.bounds, threads),
-        diameter_(2 * static_cast<double>(scene.radius)) {
+        diameter_(2 * static_cast<double>(scene.radius)),
+        farLights_(lights, emitters_.far, scene) {
     emitters_.bounds = {};
-    std::vector<float> weights;
-    for (const uint32_t light : emitters_.far) weights.push_back(FarIrradiance(lights[light], scene));
-    for (const float weight : weights) farIrradiance_ += static_cast<double>(weight);
-    // A light without irradiance at the centre of the scene may illuminate other places, as through a window.
-    constexpr double floor = 1e-3;
-    const double mean = weights.empty() ? 0 : farIrradiance_ / static_cast<double>(weights.size());
-    for (float& weight : weights) weight = mean > 0 ? std::max(weight, static_cast<float>(floor * mean)) : 1.0f;
-    farTable_ = AliasTable(weights);
   }
 
   bool SelectsPatches(const Receiver&) const override { return emitters_.hasPatches; }
@@ -45,8 +37,8 @@ class TreeSelector final : public LightSelector {
     const TreeReceiver place = Place(receiver, settings.learned);
     typename Search::Cut cut;
     search_.Look(place, cut);
-    const double far = FarShare(place, cut.irradiance);
-    choices.count = search_.IsEmpty() && farTable_.IsZero() ? 0 : CountFor(cut, far, settings.mostSamples);
+    const Far far = FarAt(place, cut.irradiance);
+    choices.count = search_.IsEmpty() && farLights_.IsEmpty() ? 0 : CountFor(cut, far.share, settings.mostSamples);
     const auto select = [&](double x, bool defensive) { return search_.Select(place, cut, x, defensive); };
     for (int k = 0; k < choices.count; ++k)
       choices.of[k] = SelectOne(far, (u + k) / choices.count, choices.count, select);
@@ -57,26 +49,24 @@ class TreeSelector final : public LightSelector {
     const TreeReceiver place = Place(receiver, settings.learned);
     typename Search::Cut cut;
     search_.Look(place, cut);
-    const double far = FarShare(place, cut.irradiance);
-    const int count = CountFor(cut, far, settings.mostSamples);
-    const std::optional<uint32_t> at = FarIndexOf(light);
-    if (at) {
-      if (farTable_.IsZero()) return PdfDiscrete(0);
-      return FarExpected(farTable_.Probability(*at), far, count);
-    }
+    const Far far = FarAt(place, cut.irradiance);
+    const int count = CountFor(cut, far.share, settings.mostSamples);
+    const std::optional<uint32_t> at = farLights_.IndexOf(light);
+    if (at) return FarExpected(farLights_.Probability(far.place, *at), far.share, count);
     if (search_.IsEmpty()) return PdfDiscrete(0);
-    return SumOver(light, patch,
-                   [&](uint32_t emitter) { return Expected(search_.ProbabilityOf(place, cut, emitter), far, count); });
+    return SumOver(light, patch, [&](uint32_t emitter) {
+      return Expected(search_.ProbabilityOf(place, cut, emitter), far.share, count);
+    });
   }
 
   std::optional<SelectedLight> SelectForSegment(const RaySegment& segment, const SegmentLights& lights,
                                                 double u) const override {
-    if (search_.IsEmpty() && farTable_.IsZero()) return std::nullopt;
+    if (search_.IsEmpty() && farLights_.IsEmpty()) return std::nullopt;
     const TreeSegment place = Place(segment);
     const EmittersOfLights emitters(emitters_, lights, place);
     typename Search::SegmentCut cut;
     search_.LookAlong(place, emitters, cut);
-    return SelectOne(FarShareAlong(segment, cut.fluence), u, 1,
+    return SelectOne({{}, FarShareAlong(segment, cut.fluence)}, u, 1,
                      [&](double x, bool defensive) { return search_.SelectAlong(place, emitters, cut, x, defensive); });
   }
 
@@ -87,8 +77,8 @@ class TreeSelector final : public LightSelector {
     typename Search::SegmentCut cut;
     search_.LookAlong(place, emitters, cut);
     const double far = FarShareAlong(segment, cut.fluence);
-    const std::optional<uint32_t> at = FarIndexOf(light);
-    if (at) return farTable_.IsZero() ? PdfDiscrete(0) : FarExpected(farTable_.Probability(*at), far, 1);
+    const std::optional<uint32_t> at = farLights_.IndexOf(light);
+    if (at) return FarExpected(farLights_.Probability({}, *at), far, 1);
     if (search_.IsEmpty()) return PdfDiscrete(0);
     return SumOver(light, patch, [&](uint32_t emitter) {
       return Expected(search_.ProbabilityAlong(place, emitters, cut, emitter), far, 1);
@@ -97,18 +87,19 @@ class TreeSelector final : public LightSelector {
 
   // Learning does not distinguish lights at infinity.
   bool Learns() const override {
-    const bool hasChoice = emitters_.first.back() - emitters_.far.size() > 1 || !farTable_.IsZero();
+    const bool hasChoice = emitters_.first.back() - emitters_.far.size() > 1 || !farLights_.IsEmpty();
     return std::is_same_v<Search, LightTree> && !search_.IsEmpty() && hasChoice;
   }
   void Record(LightLearning& learning, const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
               int patch, double irradiance) const override {
     TreeReceiver place = Place(receiver, settings.learned);
     place.region = learning.RegionOf(receiver);
-    const std::optional<uint32_t> at = FarIndexOf(light);
+    const std::optional<uint32_t> at = farLights_.IndexOf(light);
     if (at) {
-      const float within = farTable_.Probability(*at).value;
-      if (farIrradiance_ > 0)
-        learning.Record(place.region, LightTree::kNone, 0, irradiance / static_cast<double>(within) / farIrradiance_);
+      const FarLights::Place normal = farLights_.PlaceOf(place.normal, place.isTransmissive);
+      const double expected =
+          farLights_.Irradiance(normal) * static_cast<double>(farLights_.Probability(normal, *at).value);
+      if (expected > 0) learning.Record(place.region, LightTree::kNone, 0, irradiance / expected);
       return;
     }
     if constexpr (std::is_same_v<Search, LightTree>) {
@@ -121,12 +112,11 @@ class TreeSelector final : public LightSelector {
   }
 
  private:
-  // Index in emitters_.far, which is in the order of lights.
-  std::optional<uint32_t> FarIndexOf(uint32_t light) const {
-    const auto at = std::lower_bound(emitters_.far.begin(), emitters_.far.end(), light);
-    if (at == emitters_.far.end() || *at != light) return std::nullopt;
-    return static_cast<uint32_t>(at - emitters_.far.begin());
-  }
+  // The lights at infinity as seen from a receiver or a segment.
+  struct Far {
+    FarLights::Place place;
+    double share;  // probability of selecting one of them
+  };
 
   // Null: the light has no such patch, or has several and `patch` is kAnyPatch.
   std::optional<uint32_t> EmitterOf(uint32_t light, int patch) const {
@@ -182,17 +172,17 @@ class TreeSelector final : public LightSelector {
 
   // `select(x, defensive)`: the emitter that the search selects by x.
   template <class Select>
-  SelectedLight SelectOne(double far, double u, int count, const Select& select) const {
-    if (u < far || search_.IsEmpty()) {
-      const AliasTable::Result choice = farTable_.Sample(u / far);
-      return {emitters_.far[choice.index], kAnyPatch, FarExpected(choice.probability, far, count), choice.u};
+  SelectedLight SelectOne(const Far& far, double u, int count, const Select& select) const {
+    if (u < far.share || search_.IsEmpty()) {
+      const FarLights::Choice choice = farLights_.Select(far.place, u / far.share);
+      return {farLights_.LightAt(choice.index), kAnyPatch, FarExpected(choice.probability, far.share, count), choice.u};
     }
-    double x = (u - far) / (1 - far);
+    double x = (u - far.share) / (1 - far.share);
     const bool defensive = x < kDefensiveShare;
     x = defensive ? x / kDefensiveShare : (x - kDefensiveShare) / (1 - kDefensiveShare);
     const EmitterChoice choice = select(std::min(x, 0x1.fffffffffffffp-1), defensive);
     const Emitters::Patch own = emitters_.PatchOf(choice.emitter);
-    return {own.light, own.patch, Expected(choice.probability, far, count),
+    return {own.light, own.patch, Expected(choice.probability, far.share, count),
             static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
   }
 
@@ -208,27 +198,24 @@ class TreeSelector final : public LightSelector {
   // nearly all of the irradiance, a second sample reduces little variance.
   [[gnu::noinline]] int CountFor(const typename Search::Cut& cut, double far, int most) const {
     if (most == 1) return 1;
-    const double ofFar = farTable_.IsZero() ? 0 : far * far / static_cast<double>(farTable_.Size());
+    const double ofFar = farLights_.IsEmpty() ? 0 : far * far / static_cast<double>(farLights_.Count());
     const double squares = ofFar + (1 - far) * (1 - far) * cut.Concentration();
     return std::clamp(static_cast<int>(std::lround(1 / std::max(squares, 1e-3))), 1, most);
   }
 
-  static float FarIrradiance(const PlacedLight& placed, const BoundingSphere& scene) {
-    LightContext context;
-    context.transform = &placed.transform;
-    context.scene = scene;
-    const float irradiance = placed.light->GetIncidentRadianceEstimate(context, scene.center);
-    const float factor = placed.light->Settings().importanceMultiplier * placed.radianceModifier;
-    return irradiance > 0 ? std::min(irradiance, kLargest) * factor : 0.0f;
+  // Lights at infinity at a receiver, and the probability of selecting one of them: their share of the estimated
+  // irradiance here.
+  Far FarAt(const TreeReceiver& receiver, double importance) const {
+    if (farLights_.IsEmpty()) return {{}, 0};
+    const FarLights::Place place = farLights_.PlaceOf(receiver.normal, receiver.isTransmissive);
+    return {place, search_.IsEmpty() ? 1 : FarShare(receiver, place, importance)};
   }
 
-  // Probability of selecting a light at infinity: its share of the estimated irradiance here. Not inlined, so that the
-  // same receiver always gives the same bits.
-  [[gnu::noinline]] double FarShare(const TreeReceiver& place, double importance) const {
-    if (farTable_.IsZero()) return 0;
-    if (search_.IsEmpty()) return 1;
+  // Not inlined, so that the same receiver always gives the same bits.
+  [[gnu::noinline]] double FarShare(const TreeReceiver& place, const FarLights::Place& normal,
+                                    double importance) const {
     const double near = emitters_.Irradiance(importance);
-    double far = farIrradiance_;
+    double far = farLights_.Irradiance(normal);
     if (place.learning) {
       const LightLearning::Row& row = place.learning->RowOf(place.region, LightTree::kNone);
       far *= std::sqrt(static_cast<double>(row.known[0] + (1 - row.learned[0])));
@@ -238,18 +225,17 @@ class TreeSelector final : public LightSelector {
 
   // The same for a segment, along which irradiance from infinity is constant. `fluence`: by the emitters.
   [[gnu::noinline]] double FarShareAlong(const RaySegment& segment, double fluence) const {
-    if (farTable_.IsZero()) return 0;
+    if (farLights_.IsEmpty()) return 0;
     if (search_.IsEmpty()) return 1;
     const double near = emitters_.Irradiance(fluence) * static_cast<double>(emitters_.size);
-    const double far = farIrradiance_ * std::min(static_cast<double>(segment.length), diameter_);
+    const double far = farLights_.Irradiance() * std::min(static_cast<double>(segment.length), diameter_);
     return far > 0 ? std::clamp(far / (far + near), kSmallestGroup, 1 - kSmallestGroup) : kSmallestGroup;
   }
 
   Emitters emitters_;
   Search search_;
   double diameter_;  // of the scene
-  AliasTable farTable_;
-  double farIrradiance_ = 0;
+  FarLights farLights_;
 };
 
 }  // namespace

@@ -181,6 +181,7 @@ std::optional<FoundLight> LightingServices::EvaluateFirstHit(const EmittedPhoton
   const LightKind kind = scene_->fronts[photon.light].kind;
   std::optional<LightTransform> moved;
   LightContext context = Context(photon.light, photon.ray.time, true, moved);
+  SetReceiver(receiver, context);
   if (selector_->SelectsPatches(receiver)) context.patch = emission.patchIndex;
   const PdfDiscrete selection = selector_->Probability(receiver, Selection(), photon.light, context.patch);
   const Vector3 way = receiver.position - emission.position;

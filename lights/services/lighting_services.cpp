@@ -178,6 +178,7 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const S
   LightContext context = Context(selected.light, time, bidirectional, moved);
   context.u = u;
   context.patch = selected.patch;
+  SetReceiver(receiver, context);
   DirectSample direct{
       selected.light,
       IsDelta(front.kind) || !front.canBeHit,
@@ -272,7 +273,8 @@ std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Rece
   if (!Reaches(light, receiver)) return std::nullopt;
   const LightHit hit = EscapedHit(receiver.position, direction);
   std::optional<LightTransform> moved;
-  const LightContext context = Context(light, time, bidirectional, moved);
+  LightContext context = Context(light, time, bidirectional, moved);
+  SetReceiver(receiver, context);
   auto evaluation = scene_->fronts[light].light->EvaluateSamples(context, hit, receiver.position);
   if (evaluation) Tune(light, *evaluation);
   if (!evaluation || !Filter(light, receiver, direction, kInfinity, time, *evaluation)) return std::nullopt;

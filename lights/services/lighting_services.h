@@ -219,6 +219,10 @@ class LightingServices {
   static double MoreBits(float u, const Point3& of) { return WithMoreBits(u, of.x, of.y, of.z); }
   // `moved`: storage for the placement of a moving light; must live as long as the context.
   LightContext Context(uint32_t light, float time, bool bidirectional, std::optional<LightTransform>& moved) const;
+  static void SetReceiver(const Receiver& receiver, LightContext& context) {
+    context.receiverNormal = receiver.normal;
+    context.receiverIsTransmissive = receiver.isTransmissive;
+  }
 
   // The lights as seen from a segment, for their selection.
   class LightsAlong;

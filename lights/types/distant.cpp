@@ -40,7 +40,12 @@ class ParallelLight final : public LightBase {
 
   LightKind Kind() const override { return LightKind::DeltaDirection; }
 
-  float GetIncidentRadianceEstimate(const LightContext&, const Point3&) const override { return irradiance_.Average(); }
+  float GetIncidentRadianceEstimate(const LightContext& context, const Point3&) const override {
+    const float facing = irradiance_.Average();
+    if (!(LengthSquared(context.receiverNormal) > 0)) return facing;
+    const float cosine = glm::dot(context.receiverNormal, ToRenderDirection(*context.transform, toLight_));
+    return facing * (context.receiverIsTransmissive ? std::abs(cosine) : std::max(cosine, 0.0f));
+  }
   std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext&, const Point3&, const Vector3&,
                                                              float length) const override {
     if (irradiance_.IsBlack()) return std::nullopt;
@@ -102,13 +107,23 @@ class ConeSky {
   }
 
   Color Radiance(const Vector3& local) const { return Contains(local) ? radiance_ : Color(0.0f); }
-  SkySample Sample(const Point2& u) const { return {frame_.ToWorld(SampleUniformCone(u, wSampled_)), {}, false}; }
-  SkyPoint Look(const Vector3& local) const {
-    if (!Contains(local)) return {Color(0.0f), PdfSolidAngle(0)};
-    return {radiance_, UniformConePdf(static_cast<float>(w_))};
+  SkySample Sample(const SkyReceiver&, const Point2& u) const {
+    return {frame_.ToWorld(SampleUniformCone(u, wSampled_)), {}, false};
+  }
+  SkyPoint Look(const SkyReceiver&, const Vector3& local) const {
+    if (!Contains(local)) return {Color(0.0f), PdfSolidAngle(0), PdfSolidAngle(0)};
+    const PdfSolidAngle density = UniformConePdf(static_cast<float>(w_));
+    return {radiance_, density, density};
   }
   Color Mean() const { return radiance_ * static_cast<float>(0.5 * w_); }
-  float FacingIrradiance() const { return facing_ * radiance_.Average(); }
+  float Irradiance(const SkyReceiver& receiver) const {
+    const float facing = facing_ * radiance_.Average();
+    if (!receiver.HasNormal()) return facing;
+    // The mean of the directions is along the axis, and of this length.
+    const float length = static_cast<float>(1 - 0.5 * w_), variance = 1 - length * length;
+    const float cosine = glm::dot(receiver.normal, axis_) * length;
+    return facing * MeanCosine(cosine, variance, receiver.isTransmissive) / MeanCosine(length, variance, false);
+  }
 
  private:
   bool Contains(const Vector3& local) const {

@@ -54,7 +54,11 @@ ImageSky::ImageSky(const ParameterList& parameters, const std::string& name, con
   table_ = ColorTable(
       weights, [&](int x, int y) { return image.Texel(x, y); }, width, height);
   // A sky whose weights all vanish in float is black.
-  if (table_.IsZero()) mean_ = Color(0.0f);
+  if (table_.IsZero()) {
+    mean_ = Color(0.0f);
+  } else {
+    cells_ = SkyCells(table_, [this](const Point2& uv) { return FromSquare(uv); });
+  }
 }
 
 float ImageSky::RowSolidAngle(int y, int columns, int rows) const {
@@ -80,8 +84,7 @@ double ImageSky::UpperIlluminance(const LightTransform& transform) const {
   for (int y = 0; y < height * parts; ++y) {
     for (int x = 0; x < width * parts; ++x) {
       const Point2 uv = TexelMiddle(x, y, width * parts, height * parts);
-      const Vector3 w = map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv);
-      const float cosine = weight(w);
+      const float cosine = weight(FromSquare(uv));
       if (!(cosine > 0)) continue;
       sum += static_cast<double>(table_.ColorAt(x / parts, y / parts).Luminance() * cosine *
                                  RowSolidAngle(y, width * parts, height * parts));

@@ -5,6 +5,7 @@
 
 #include "lights/emission_image.h"
 #include "lights/infinite_frame.h"
+#include "lights/types/sky_cells.h"
 #include "sampling/color_table.h"
 #include "sampling/equal_area.h"
 
@@ -30,26 +31,46 @@ class ImageSky {
 
   Color Radiance(const Vector3& local) const { return scale_ * table_.Look(ToSquare(toImage_ * local)).color; }
   Color Mean() const { return mean_; }
-  // Irradiance of a surface under a hemisphere of the mean radiance, mean of the channels.
-  float FacingIrradiance() const { return kPi * mean_.Average(); }
-
-  SkySample Sample(const Point2& u) const {
-    const ColorTable::Cell cell = table_.Sample(u);
-    const Point2 uv = table_.At(cell);
-    const Vector3 w = map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv);
-    return {w * toImage_, {scale_ * cell.color, ToSolidAngle(cell.pdf, w)}, IsInside(cell, w)};
+  // Without a normal: of a surface under a hemisphere of the mean radiance.
+  float Irradiance(const SkyReceiver& receiver) const {
+    if (!receiver.HasNormal()) return kPi * mean_.Average();
+    return 4 * kPi * mean_.Average() * cells_.MeanCosineOf(InImage(receiver));
   }
 
-  SkyPoint Look(const Vector3& local) const {
+  SkySample Sample(const SkyReceiver& receiver, const Point2& u) const {
+    SkyCells::Choice choice;
+    choice.gain = 1;
+    if (!receiver.HasNormal()) {
+      choice.texel = table_.Sample(u);
+    } else {
+      choice = cells_.Sample(table_, InImage(receiver), u);
+      if (!choice.exists) return {-receiver.normal, {}, true};  // nothing of the sky is seen
+    }
+    const ColorTable::Cell& cell = choice.texel;
+    const Vector3 w = FromSquare(table_.At(cell));
+    const PdfSolidAngle density = ToSolidAngle(cell.pdf, w);
+    return {w * toImage_, {scale_ * cell.color, density, density * choice.gain}, IsInside(cell, w)};
+  }
+
+  SkyPoint Look(const SkyReceiver& receiver, const Vector3& local) const {
     const Vector3 w = toImage_ * local;
     const ColorTable::Texel texel = table_.Look(ToSquare(w));
-    return {scale_ * texel.color, ToSolidAngle(texel.pdf, w)};
+    const PdfSolidAngle density = ToSolidAngle(texel.pdf, w);
+    const bool hasNormal = receiver.HasNormal() && !density.IsZero();
+    return {scale_ * texel.color, density,
+            hasNormal ? density * cells_.Gain(InImage(receiver), texel.x, texel.y) : density};
   }
 
   // Luminous irradiance of a surface that faces the image of the map's +z under `transform`, before Scale.
   double UpperIlluminance(const LightTransform& transform) const;
 
  private:
+  SkyReceiver InImage(const SkyReceiver& receiver) const {
+    return {toImage_ * receiver.normal, receiver.isTransmissive};
+  }
+  Vector3 FromSquare(const Point2& uv) const {
+    return map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv);
+  }
   Point2 ToSquare(const Vector3& w) const {
     return map_ == SkyMap::EqualArea ? EqualAreaSphereToSquare(w) : LatLongSphereToSquare(w);
   }
@@ -78,6 +99,7 @@ class ImageSky {
   SkyMap map_ = SkyMap::EqualArea;
   glm::mat3 toImage_{1.0f};
   ColorTable table_;
+  SkyCells cells_;
   Color scale_{1.0f};
   Color mean_;
 };

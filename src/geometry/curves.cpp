@@ -50,20 +50,52 @@ size_t CountSegments(const CurveParameters& p) {
                            " of degree " + std::to_string(p.degree));
 }
 
-// The normal at an end of a ribbon's segment. Along the curve it has no meaning, and Embree would leave out the
-// segment: the part of the other end's normal that is across the curve is taken then, or any direction across.
-Normal3 NormalAcross(const Vector3& tangent, const Normal3& normal, const Normal3& other) {
+// The direction across a ribbon in its own plane, unit; 0 where the normal is along the curve.
+Vector3 AcrossRibbon(const Vector3& along, const Normal3& normal) {
   constexpr float kLeastSine = 1e-3f;
-  const Vector3 along = SafeNormalize(tangent, Vector3(0.0f, 0.0f, 1.0f));
-  for (const Normal3& n : {normal, other}) {
-    const Vector3 across = Vector3(n) - along * glm::dot(Vector3(n), along);
-    if (LengthSquared(across) < kLeastSine * kLeastSine) continue;
-    return n == normal ? n : Normal3(glm::normalize(across));
-  }
-  return Frame::FromNormal(Normal3(along)).x;
+  const Vector3 across = glm::cross(Vector3(normal), along);
+  return LengthSquared(across) < kLeastSine * kLeastSine ? Vector3(0.0f) : glm::normalize(across);
 }
 
-void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
+// Normals of both ends of each segment. A normal along the curve has no meaning, and Embree would leave out the
+// segment: the ribbon is continued then from the nearest end whose normal has one, such that the direction across it
+// turns as little as it can. Without such an end that direction is arbitrary at the first one.
+std::vector<std::array<Normal3, 2>> NormalsAcross(const std::vector<std::array<Normal3, 2>>& normals,
+                                                  const CurveSet& curves) {
+  const size_t count = 2 * normals.size();  // ends of segments, in order along the curve
+  std::vector<Vector3> along(count), across(count);
+  for (size_t i = 0; i < count; ++i) {
+    const Vector3 tangent = CurveTangent(curves, static_cast<uint32_t>(i / 2), i % 2 == 0 ? 0.0f : 1.0f);
+    along[i] = SafeNormalize(tangent, Vector3(0.0f, 0.0f, 1.0f));
+    across[i] = AcrossRibbon(along[i], normals[i / 2][i % 2]);
+  }
+  const auto isKnown = [&](size_t i) { return LengthSquared(across[i]) > 0; };
+  std::vector<Vector3> taken = across;
+  if (std::none_of(across.begin(), across.end(), [](const Vector3& a) { return LengthSquared(a) > 0; }))
+    taken.assign(count, Frame::FromNormal(Normal3(along[0])).x);
+  // From the nearest known end before, and then from that behind if it is nearer.
+  std::vector<size_t> distance(count, count);
+  for (size_t i = 0; i < count; ++i) {
+    if (isKnown(i)) distance[i] = 0;
+    if (i > 0 && !isKnown(i) && distance[i - 1] < count) taken[i] = taken[i - 1], distance[i] = distance[i - 1] + 1;
+  }
+  for (size_t i = count - 1; i-- > 0;) {
+    if (distance[i + 1] + 1 < distance[i]) taken[i] = taken[i + 1], distance[i] = distance[i + 1] + 1;
+  }
+  std::vector<std::array<Normal3, 2>> result(count / 2);
+  for (size_t i = 0; i < count; ++i) {
+    const Vector3 normal = glm::cross(along[i], taken[i]);
+    Normal3& own = result[i / 2][i % 2];
+    own = isKnown(i)                      ? normals[i / 2][i % 2]
+          : LengthSquared(normal) > 1e-6f ? Normal3(glm::normalize(normal))
+                                          : Frame::FromNormal(Normal3(along[i])).x;
+  }
+  return result;
+}
+
+// Normals of a ribbon at both ends of its segments, which are not divided yet, in render space. Throws Error.
+std::vector<std::array<Normal3, 2>> PlacedNormals(const CurveParameters& p, const CurveSet& whole) {
+  const size_t segments = whole.segments.size();
   if (p.normals.size() != segments + 1) {
     throw Error(p.where, "curve: a ribbon of " + std::to_string(segments) + " segments needs " +
                              std::to_string(segments + 1) + " normals, not " + std::to_string(p.normals.size()));
@@ -75,17 +107,37 @@ void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
     if (!(length > 0) || !std::isfinite(length)) throw Error(p.where, "curve: a normal is zero or not finite");
     normals.push_back(Vector3(transformed / length));
   }
-  for (size_t i = 0; i < segments; ++i) {
-    const auto segment = static_cast<uint32_t>(i);
-    const Vector3 along[2] = {CurveTangent(curves, segment, 0), CurveTangent(curves, segment, 1)};
-    curves.segmentNormals.push_back(
-        {NormalAcross(along[0], normals[i], normals[i + 1]), NormalAcross(along[1], normals[i + 1], normals[i])});
+  std::vector<std::array<Normal3, 2>> ofEnds;
+  for (size_t i = 0; i < segments; ++i) ofEnds.push_back({normals[i], normals[i + 1]});
+  return NormalsAcross(ofEnds, whole);
+}
+
+// Angle between two vectors in radians; 0 if one of them vanishes.
+double AngleBetween(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+// Number of parts of a ribbon's segment. Embree makes the edges of each from its ends alone: within a part neither the
+// tangent nor the normal may turn far.
+int PartsOfRibbon(const Segment& b, double turnOfNormal) {
+  constexpr double kMostTurn = 0.25;  // radians: the edges then deviate by 1e-5 of the width
+  constexpr int kMostParts = 64;
+  // The control polygon turns at least as far as the curve. Legs without length have no direction.
+  double turn = 0;
+  std::optional<Vector3d> before;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vector3d leg = b[k + 1] - b[k];
+    if (!(glm::length(leg) > 0)) continue;
+    if (before) turn += AngleBetween(*before, leg);
+    before = leg;
   }
+  return static_cast<int>(std::clamp(std::ceil(std::max(turn, turnOfNormal) / kMostTurn), 1.0, double(kMostParts)));
 }
 
 // Number of parts of a flat segment for which Embree's lines deviate by at most 1 % of `radius`: n lines deviate by at
 // most max |B''| / (8 n²).
 int PartsOfFlat(const Segment& b, double radius) {
+  if (!(radius > 0)) return 1;
   constexpr double kTolerance = 0.01;
   constexpr int kMostParts = 256;
   const double second = 6 * std::max(glm::length(b[0] - 2.0 * b[1] + b[2]), glm::length(b[1] - 2.0 * b[2] + b[3]));
@@ -133,8 +185,12 @@ class PlacedCurve {
   }
   // The number of parts that a segment is divided into.
   int PartsOf(size_t i, const Segment& segment) const {
-    if (parameters_.kind != CurveSet::Kind::Flat) return 1;
-    return PartsOfFlat(segment, ThinnestOf(RadiusAt(i, 0), RadiusAt(i, 1)));
+    if (parameters_.kind == CurveSet::Kind::Cylinder) return 1;
+    if (parameters_.kind == CurveSet::Kind::Flat)
+      return PartsOfFlat(segment, ThinnestOf(RadiusAt(i, 0), RadiusAt(i, 1)));
+    const std::vector<Normal3>& normals = parameters_.normals;
+    const bool hasNormals = normals.size() == count_ + 1;
+    return PartsOfRibbon(segment, hasNormals ? AngleBetween(Vector3d(normals[i]), Vector3d(normals[i + 1])) : 0);
   }
 
  private:
@@ -157,6 +213,16 @@ CurveSet MakeCurves(const CurveParameters& p) {
   const PlacedCurve curve(p);
   CurveSet curves;
   curves.kind = p.kind;
+  const bool isRibbon = p.kind == CurveSet::Kind::Ribbon;
+  std::vector<std::array<Normal3, 2>> given, normals;  // of segments as given, and of their parts
+  if (isRibbon) {
+    CurveSet whole;
+    for (size_t i = 0; i < curve.Count(); ++i) {
+      const Segment segment = curve.At(i);
+      whole.segments.push_back({Point3(segment[0]), Point3(segment[1]), Point3(segment[2]), Point3(segment[3])});
+    }
+    given = PlacedNormals(p, whole);
+  }
   for (size_t i = 0; i < curve.Count(); ++i) {
     const Segment segment = curve.At(i);
     const int parts = curve.PartsOf(i, segment);
@@ -170,9 +236,14 @@ CurveSet MakeCurves(const CurveParameters& p) {
         radii[k] = static_cast<float>(curve.RadiusAt(i, u0 + (u1 - u0) * static_cast<double>(k) / 3));
       }
       curves.uRange.push_back({static_cast<float>(u0), static_cast<float>(u1)});
+      if (!isRibbon) continue;
+      const auto at = [&](double u) {
+        return SafeNormalize(glm::mix(given[i][0], given[i][1], static_cast<float>(u)), Normal3(0.0f));
+      };
+      normals.push_back({at(u0), at(u1)});
     }
   }
-  if (p.kind == CurveSet::Kind::Ribbon) AddNormals(p, curve.Count(), curves);
+  if (isRibbon) curves.segmentNormals = NormalsAcross(normals, curves);
   return curves;
 }
 

@@ -72,9 +72,33 @@ ColorTable::Cell ColorTable::Sample(const Point2& u) const {
   return {x, y, {column.t, row.t}, CellDensity(x, y), entries[x].color};
 }
 
+double ColorTable::ShareOfRow(int y, int xBegin, int xEnd) const {
+  const Entry* row = Row(y);
+  const double ofRow = static_cast<double>(rows_.DensityOf(static_cast<uint32_t>(y))) / height_;
+  return ofRow * static_cast<double>(row[xEnd].cdf - row[xBegin].cdf);
+}
+
+ColorTable::Cell ColorTable::SampleInRow(int y, int xBegin, int xEnd, double u) const {
+  const auto columns = static_cast<size_t>(width_), row = static_cast<size_t>(y);
+  const Entry* entries = Row(y);
+  const auto begin = static_cast<double>(entries[xBegin].cdf), end = static_cast<double>(entries[xEnd].cdf);
+  // Rounded down to the units of the table, which changes no comparison with it; the position in the texel has the
+  // rest.
+  const double target = std::min(begin + u * (end - begin), end - 0.5 / static_cast<double>(kUnits));
+  const auto known = static_cast<float>(std::floor(target * static_cast<double>(kUnits)) / static_cast<double>(kUnits));
+  const size_t steps = GuideSteps(columns);
+  const RowCdf<const Entry> cdf{entries};
+  const Range range = GuidedRange(&guide_[row * (steps + 1)], steps, columns, known, guideShift_);
+  const uint32_t i = FindInterval(cdf, range, columns, known);
+  const auto first = static_cast<double>(cdf[i]), width = static_cast<double>(cdf[i + 1]) - first;
+  const auto t = static_cast<float>((target - first) / width);
+  const int x = static_cast<int>(i);
+  return {x, y, {std::min(t, kOneMinusEpsilon), 0.0f}, CellDensity(x, y), entries[x].color};
+}
+
 ColorTable::Texel ColorTable::Look(const Point2& uv) const {
   const int x = IntervalAt(uv.x, width_), y = IntervalAt(uv.y, height_);
-  return {IsZero() ? 0.0f : CellDensity(x, y), ColorAt(x, y)};
+  return {IsZero() ? 0.0f : CellDensity(x, y), ColorAt(x, y), x, y};
 }
 
 Color ColorTable::ColorAt(int x, int y) const {

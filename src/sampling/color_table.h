@@ -32,6 +32,11 @@ class ColorTable {
     Color color;
   };
   Cell Sample(const Point2& u) const;  // requires !IsZero()
+  // Sum of the densities of the texels [xBegin, xEnd) of row y, over that of all: their probability in Sample.
+  double ShareOfRow(int y, int xBegin, int xEnd) const;
+  // Samples one of these texels in proportion to their densities, by u in [0,1). Requires that one is positive.
+  // Cell::pdf is that of Sample, Cell::t.y is 0.
+  Cell SampleInRow(int y, int xBegin, int xEnd, double u) const;
   // The point of a cell in [0,1]², rounded to float: for a point at the very edge of the cell, Look may find the next
   // cell.
   Point2 At(const Cell& cell) const {
@@ -42,6 +47,7 @@ class ColorTable {
   struct Texel {
     float pdf;
     Color color;
+    int x, y;
   };
   Texel Look(const Point2& uv) const;
   Color ColorAt(int x, int y) const;

@@ -1,5 +1,5 @@
-// What needs the whole scene: every name that is used is defined, no object contains itself, and what cannot move stays
-// where it is when the shutter opens.
+// Checks that need the whole scene: every name that is used is defined, no object contains itself, and cameras, media
+// and textures under a moving transform are placed at shutter open.
 #include "scene/scene_parser.h"
 
 #include "math/motion.h"

@@ -112,7 +112,7 @@ TEST_F(HiddenFaults, WhereFewSamplesGo) {
 }
 
 TEST_F(HiddenFaults, WhereNothingShines) {
-  ExpectEach(kDensityPart, {{HiddenFault::PdfWhereDark, {"dome", "window"}, {"integral"}, {}}});
+  ExpectEach(kDensityPart, {{HiddenFault::PdfWhereDark, {"dome", "window"}, {"integral"}, {"directions"}}});
 }
 
 TEST_F(HiddenFaults, InDirectionsOfPhotons) {

@@ -104,6 +104,36 @@ TEST(Curves, BentFlatOnesKeepTheirWidth) {
 }
 
 // A normal along the curve says nothing about where a ribbon faces; the ribbon is there all the same.
+// Rays along z at four fifths of the half width beside the axis, and one and a half half widths beside it.
+void ExpectFullWidth(const CurveSet& curves) {
+  const GeometryScene scene(SceneOf(ToShape(CurveSet(curves))));
+  for (uint32_t segment = 0; segment < curves.segments.size(); ++segment) {
+    for (int i = 0; i < 8; ++i) {
+      const float u = (static_cast<float>(i) + 0.5f) / 8;
+      const Vector3 tangent = glm::normalize(CurveTangent(curves, segment, u));
+      const Vector3 across = glm::normalize(glm::cross(Vector3(0, 0, 1), tangent)) * CurveRadius(curves, segment, u);
+      for (const float side : {-1.5f, -0.8f, 0.8f, 1.5f}) {
+        RayHit hit;
+        const Ray ray{CurveAxis(curves, segment, u) + side * across - Vector3(0, 0, 4), {0, 0, 1}};
+        EXPECT_EQ(scene.Intersect(ray, visibility::kAll, hit), std::abs(side) < 1)
+            << segment << " " << u << " " << side;
+      }
+    }
+  }
+}
+
+TEST(Curves, BentRibbonsAreOfFullWidth) {
+  CurveParameters p;
+  p.kind = CurveSet::Kind::Ribbon;
+  p.normals = {Normal3(0, 0, 1), Normal3(0, 0, 1)};
+  p.width0 = p.width1 = 0.1f;
+  p.points = {{-0.9f, -0.7f, 0}, {-0.3f, 1, 0}, {0.3f, -1, 0}, {0.9f, 0.7f, 0}};
+  ExpectFullWidth(MakeCurves(p));
+  p.points = {{0, -1, 0}, {0, -0.2f, 0}, {0.1f, 0.6f, 0}, {0.8f, 0.9f, 0}};
+  ExpectFullWidth(MakeCurves(p));
+}
+
+// The ribbon rises to z at its end, where its normal is along it.
 TEST(Curves, RibbonsWithANormalAlongThem) {
   CurveParameters p;
   p.kind = CurveSet::Kind::Ribbon;
@@ -113,22 +143,41 @@ TEST(Curves, RibbonsWithANormalAlongThem) {
     p.normals = {Normal3(0, 0, 1), end};
     const CurveSet curves = MakeCurves(p);
     const GeometryScene scene(SceneOf(ToShape(MakeCurves(p))));
-    int hits = 0;
-    for (int i = 0; i < 10; ++i) {
-      const float u = 0.05f + 0.06f * static_cast<float>(i);
-      const Ray ray{CurveAxis(curves, 0, u) + Vector3(0.2f, 0, -4), {0, 0, 1}};
-      RayHit hit;
-      hits += scene.Intersect(ray, visibility::kAll, hit) ? 1 : 0;
+    for (uint32_t segment = 0; segment < curves.segments.size(); ++segment) {
+      for (const float u : {0.2f, 0.8f}) {
+        const Vector3 tangent = glm::normalize(CurveTangent(curves, segment, u));
+        const Vector3 normal = glm::cross(tangent, Vector3(1, 0, 0));  // of a ribbon that is not twisted
+        for (const float side : {-0.35f, 0.35f}) {
+          const Ray ray{CurveAxis(curves, segment, u) + Vector3(side, 0, 0) + 0.05f * normal, -normal};
+          RayHit hit;
+          ASSERT_TRUE(scene.Intersect(ray, visibility::kAll, hit)) << segment << " " << u << " " << side;
+          EXPECT_LT(hit.t, 0.1f);
+        }
+      }
     }
-    EXPECT_EQ(hits, 10) << end.y;
   }
-  p.normals = {Normal3(0, 1, 0), Normal3(0, 0, 1)};  // along the curve at both ends
+}
+
+// A quarter turn whose normals are along it at both ends is hit over one width, wherever that is.
+TEST(Curves, RibbonsWithoutUsableNormals) {
+  CurveParameters p;
+  p.kind = CurveSet::Kind::Ribbon;
+  p.points = {{0, -1, 0}, {0, -0.45f, 0}, {0, 0, 0.45f}, {0, 0, 1}};
+  p.width0 = p.width1 = 0.2f;
+  p.normals = {Normal3(0, 1, 0), Normal3(0, 0, 1)};
+  const CurveSet curves = MakeCurves(p);
   const GeometryScene scene(SceneOf(ToShape(MakeCurves(p))));
-  const Ray ray{{0, 0, -4}, {0, 0, 1}};
-  RayHit hit;
-  const Ray across{{-4, 0, -0.25f}, {1, 0, 0}};
-  RayHit other;
-  EXPECT_TRUE(scene.Intersect(ray, visibility::kAll, hit) || scene.Intersect(across, visibility::kAll, other));
+  for (uint32_t segment = 0; segment < curves.segments.size(); ++segment) {
+    const Vector3 along = glm::normalize(CurveTangent(curves, segment, 0.5f));
+    const Vector3 normal(glm::normalize(curves.segmentNormals[segment][0] + curves.segmentNormals[segment][1]));
+    EXPECT_LT(std::abs(glm::dot(along, normal)), 0.2f);
+    for (const float side : {-0.08f, 0.08f}) {
+      const Vector3 across = glm::normalize(glm::cross(normal, along)) * side;
+      const Ray ray{CurveAxis(curves, segment, 0.5f) + across + 0.05f * normal, -normal};
+      RayHit hit;
+      EXPECT_TRUE(scene.Intersect(ray, visibility::kAll, hit)) << segment << " " << side;
+    }
+  }
 }
 
 TEST(Curves, StraightOnesAreHitWhereTheyAre) {

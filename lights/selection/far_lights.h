@@ -1,0 +1,58 @@
+// The lights at infinity of a selector: selected by the irradiance that each causes at a receiver, which depends on the
+// receiver's normal alone. It is tabulated by normal.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lights/selection/light_selector.h"
+#include "sampling/tables.h"
+
+namespace lampyr {
+
+class FarLights {
+ public:
+  // `far`: indices of the lights at infinity in `lights`, ascending.
+  FarLights(std::span<const PlacedLight> lights, std::span<const uint32_t> far, const BoundingSphere& scene);
+
+  bool IsEmpty() const { return lights_.empty(); }
+  size_t Count() const { return lights_.size(); }
+  uint32_t LightAt(size_t i) const { return lights_[i]; }
+  // Index of a light among those at infinity; nullopt: it has a position.
+  std::optional<uint32_t> IndexOf(uint32_t light) const;
+
+  // A normal of the table and its opposite, as needed for a receiver.
+  struct Place {
+    static constexpr uint32_t kNone = 0xffffffffu;  // without a normal, or without a table
+    uint32_t front = kNone, back = kNone;           // `back`: of transmissive receivers
+  };
+  Place PlaceOf(const Normal3& normal, bool isTransmissive) const;
+
+  // Estimated irradiance by all of them together, W/m², mean of the channels.
+  double Irradiance(const Place& place) const;
+  // Where along segments in media, which are lit from all sides alike.
+  double Irradiance() const { return irradiance_; }
+
+  struct Choice {
+    uint32_t index;
+    PdfDiscrete probability;
+    float u;  // the random number, rescaled to [0,1)
+  };
+  Choice Select(const Place& place, double u) const;  // requires !IsEmpty()
+  PdfDiscrete Probability(const Place& place, uint32_t index) const;
+
+ private:
+  double WeightUpTo(const Place& place, size_t index) const;
+  double ProbabilityOf(const Place& place, uint32_t index) const;
+
+  std::vector<uint32_t> lights_;
+  AliasTable overall_;  // without regard to normals
+  double irradiance_ = 0;
+  // By normal: sums of the irradiances of the lights before each one, and of all at the end. Empty: no light depends on
+  // the normal, or there are too many for a table.
+  std::vector<double> sums_;
+};
+
+}  // namespace lampyr
