@@ -16,8 +16,11 @@ constexpr int kPassTimes = -2;                            // in the place of the
 
 // Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
 // time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified, whatever
-// the sampler of the pixels: there are as few as passes. `seed` and `pass` are of the whole render: the stages of an
-// adaptive one share a sequence.
+// the sampler of the pixels: there are as few as passes. `pass` counts from the beginning of the sequence.
+//
+// The stages of an adaptive render share a sequence that begins with its first pass. Each of them is an aligned block
+// of it, and Owen scrambling puts the times of such a block in random order: a pass of a stage has any time of the
+// shutter with the same probability, whatever the times of earlier stages were, which the rates depend on.
 float PassTime(uint64_t seed, uint32_t pass) {
   Sampler sampler(SamplerKind::Sobol, seed);
   sampler.StartPixelSample(0, kPassTimes, pass);
@@ -77,6 +80,12 @@ class BothPaths {
   class AdaptivePixels;
   struct SlotSampler;
 
+  float TimeOf(uint32_t index) const {
+    if (!pass_.allocation) return PassTime(pass_.settings.seed, index);
+    const uint32_t first = pass_.allocation->Stage().first - pass_.allocation->Stage().before;
+    return PassTime(first == 0 ? pass_.settings.seed : MixBits(pass_.settings.seed + first), index - first);
+  }
+
   uint64_t PathsPerRound() const { return static_cast<uint64_t>(chunks_) * chunkPaths_; }
   uint64_t SeedOfPhotons() const { return MixBits(pass_.Seed() + kBeforeTheFirst); }
 
@@ -99,7 +108,7 @@ class BothPaths {
   // Traces the pixels from `round` on, as many as the chunks take. Without `withCamera`: light paths for their photons
   // only.
   void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
-    const float passTime = wanted_ && pass_.scene.hasMotion ? PassTime(pass_.settings.seed, index) : 0;
+    const float passTime = wanted_ && pass_.scene.hasMotion ? TimeOf(index) : 0;
     ParallelFor(chunks_, pass_.threads, [&](int chunk) {
       uint64_t begin = std::min(round + static_cast<uint64_t>(chunk) * chunkPaths_, end);
       uint64_t chunkEnd = std::min(begin + chunkPaths_, end);

@@ -9,10 +9,10 @@ void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
     film_->CopyFrom(state.film, threads);
   }
   // State that no longer records does not change, so it is not copied again.
-  const LightLearning* learning = state.learning ? state.learning->get() : nullptr;
+  LightLearning* learning = state.learning ? state.learning->get() : nullptr;
   if (learning && (learning->IsRecording() || (learning_ && learning_->IsRecording()))) {
     if (!learning_) learning_ = std::make_unique<LightLearning>(scene_);
-    learning_->CopyFrom(*learning);
+    learning->CopyChangesTo(*learning_);
     selection_ = std::make_unique<SelectionTest>(**state.selection);
   }
   const EmissionLearning* guiding = state.guiding ? state.guiding->get() : nullptr;

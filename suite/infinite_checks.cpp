@@ -138,12 +138,13 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
   };
   const std::vector<Vector3d> directions = DrawDirections(rng_, options_.samples, draw);
   const std::vector<Vector3d> hints = DrawDirections(rng_, kHints, draw);
+  // Of the directions that can be sampled: those behind a receiver need not be.
   DirectionQuadrature quadrature(
       CapAround(hints), hints,
       [&](const Vector3d& direction) -> Integrands {
         const auto e = light_.EvaluateSamples(subject_.context, HitAlong(Rounded(direction), P), P);
         if (!e || IsBlack(*e)) return {};
-        return {Value(e->pdfDirect), Emitted(subject_, *e) * CosineTo(direction)};
+        return {Value(e->pdfDirect), e->pdfDirect.IsZero() ? 0.0 : Emitted(subject_, *e)};
       },
       rng_, options_.effort* DirectionQuadrature::kBudget);
   Estimate share, fluence;
@@ -158,8 +159,7 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
     context.u = {x[0], x[1]};
     context.uDirection = {x[2], x[3]};
     const auto sample = light_.GenerateSamples(context, P);
-    if (!sample) return 0.0;
-    return Emitted(subject_, *sample) * CosineTo(Vector3d(sample->direction)) / Value(sample->pdfDirect);
+    return sample ? Emitted(subject_, *sample) / Value(sample->pdfDirect) : 0.0;
   });
   const std::string where = Case(" " + receiver.name);
   const std::string words = "receiver \"" + receiver.name + "\": ";

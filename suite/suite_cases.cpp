@@ -224,8 +224,11 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) co
   subject.model = model.get();
   subject.context.transform = &placed;
   subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
-  // A portal is given in world space: its size is the same wherever the light is placed.
-  if (parameters.Find("portal")) subject.context.scene.radius = std::max(subject.context.scene.radius, 4.0f);
+  // A portal is given in world space: it stays where it was built, in its size, wherever the light is placed.
+  if (parameters.Find("portal")) {
+    subject.context.scene.center = build.transform.toRender.translation;
+    subject.context.scene.radius = std::max(subject.context.scene.radius, 4.0f);
+  }
   subject.context.bidirectional = true;
   std::unique_ptr<Light> light;
   try {

@@ -39,14 +39,30 @@ LightLearning::LightLearning(const BoundingSphere& scene)
       rows_(kRows),
       squares_(kRows * kWidth),
       counts_(kRows * kWidth),
-      used_(kRows / 64) {}
+      used_(kRows / 64),
+      changed_(kRows / 64) {}
+
+namespace {
+
+template <class Visit>
+void ForRowsOf(const SparseArray<std::atomic<uint64_t>>& rows, const Visit& visit) {
+  for (size_t word = 0; word < kRows / 64; ++word) {
+    for (uint64_t bits = rows[word].load(std::memory_order_relaxed); bits != 0; bits &= bits - 1)
+      visit(64 * word + static_cast<size_t>(std::countr_zero(bits)));
+  }
+}
+
+void Set(SparseArray<std::atomic<uint64_t>>& rows, size_t row) {
+  std::atomic<uint64_t>& word = rows[row / 64];
+  const uint64_t bit = uint64_t{1} << row % 64;
+  if (!(word.load(std::memory_order_relaxed) & bit)) word.fetch_or(bit, std::memory_order_relaxed);
+}
+
+}  // namespace
 
 template <class Visit>
 void LightLearning::ForUsedRows(const Visit& visit) const {
-  for (size_t word = 0; word < kRows / 64; ++word) {
-    for (uint64_t bits = used_[word].load(std::memory_order_relaxed); bits != 0; bits &= bits - 1)
-      visit(64 * word + static_cast<size_t>(std::countr_zero(bits)));
-  }
+  ForRowsOf(used_, visit);
 }
 
 uint32_t LightLearning::RegionOf(const Receiver& receiver) const {
@@ -73,13 +89,13 @@ void LightLearning::Record(uint32_t region, uint32_t node, int child, double rat
   const double bounded = ratio > 0 ? std::min(ratio, kLargestRatio) : 0.0;
   squares_[i].fetch_add(static_cast<uint64_t>(bounded * bounded * kUnit), std::memory_order_relaxed);
   counts_[i].fetch_add(1, std::memory_order_relaxed);
-  std::atomic<uint64_t>& used = used_[row / 64];
-  const uint64_t bit = uint64_t{1} << row % 64;
-  if (!(used.load(std::memory_order_relaxed) & bit)) used.fetch_or(bit, std::memory_order_relaxed);
+  Set(used_, row);
+  Set(changed_, row);
 }
 
 void LightLearning::Freeze() {
   ForUsedRows([&](size_t row) {
+    Set(changed_, row);
     for (size_t child = 0; child < kWidth; ++child) {
       const size_t i = row * kWidth + child;
       const double squares = static_cast<double>(squares_[i].load(std::memory_order_relaxed)) / kUnit;
@@ -91,23 +107,42 @@ void LightLearning::Freeze() {
 }
 
 void LightLearning::Forget() {
-  CopyFrom(LightLearning({center_, kCells / cellsPerUnit_}));
+  ForUsedRows([&](size_t row) {
+    Set(changed_, row);
+    rows_[row] = {};
+    for (size_t i = row * kWidth; i < (row + 1) * kWidth; ++i) {
+      squares_[i].store(0, std::memory_order_relaxed);
+      counts_[i].store(0, std::memory_order_relaxed);
+    }
+  });
+  for (size_t word = 0; word < kRows / 64; ++word) used_[word].store(0, std::memory_order_relaxed);
   isRecording_ = false;
+}
+
+void LightLearning::CopyRowFrom(const LightLearning& other, size_t row) {
+  rows_[row] = other.rows_[row];
+  for (size_t i = row * kWidth; i < (row + 1) * kWidth; ++i) {
+    squares_[i].store(other.squares_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
+    counts_[i].store(other.counts_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
+  }
 }
 
 void LightLearning::CopyFrom(const LightLearning& other) {
   isRecording_ = other.isRecording_;
-  const auto copy = [&](size_t row) {
-    rows_[row] = other.rows_[row];
-    for (size_t i = row * kWidth; i < (row + 1) * kWidth; ++i) {
-      squares_[i].store(other.squares_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
-      counts_[i].store(other.counts_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
-    }
-  };
+  const auto copy = [&](size_t row) { CopyRowFrom(other, row); };
   ForUsedRows(copy);  // rows that `other` has not used become 0
   other.ForUsedRows(copy);
   for (size_t word = 0; word < kRows / 64; ++word)
     used_[word].store(other.used_[word].load(std::memory_order_relaxed), std::memory_order_relaxed);
+}
+
+void LightLearning::CopyChangesTo(LightLearning& copy) {
+  copy.isRecording_ = isRecording_;
+  ForRowsOf(changed_, [&](size_t row) { copy.CopyRowFrom(*this, row); });
+  for (size_t word = 0; word < kRows / 64; ++word) {
+    copy.used_[word].store(used_[word].load(std::memory_order_relaxed), std::memory_order_relaxed);
+    changed_[word].store(0, std::memory_order_relaxed);
+  }
 }
 
 // The factors in effect are older than the newest records: both are saved.
@@ -132,7 +167,8 @@ void LightLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
   for (const SavedRow& saved : bytes.List<SavedRow>(kRows)) {
     if (saved.index >= kRows) throw Error("it holds a number out of range");
-    used_[saved.index / 64].fetch_or(uint64_t{1} << saved.index % 64, std::memory_order_relaxed);
+    Set(used_, saved.index);
+    Set(changed_, saved.index);
     for (size_t child = 0; child < kWidth; ++child) {
       const size_t i = saved.index * kWidth + child;
       if (!(saved.known[child] >= 0) || !(saved.learned[child] >= 0 && saved.learned[child] <= 1))

@@ -49,6 +49,9 @@ class LightLearning {
 
   // Copies the state of another object of the same scene. Not concurrently with the use of either.
   void CopyFrom(const LightLearning& other);
+  // The same to `copy`, which must be equal to the state of this object at the previous call, or to the state that this
+  // one was copied from: only rows that have changed since are copied.
+  void CopyChangesTo(LightLearning& copy);
 
   // Saves factors and records. Not concurrently with selection or recording.
   void Save(ByteWriter& bytes) const;
@@ -62,6 +65,7 @@ class LightLearning {
   // Calls visit(row) for all rows with records.
   template <class Visit>
   void ForUsedRows(const Visit& visit) const;
+  void CopyRowFrom(const LightLearning& other, size_t row);
 
   bool isRecording_ = true;
   Point3 center_;
@@ -70,7 +74,8 @@ class LightLearning {
   SparseArray<Row> rows_;
   SparseArray<std::atomic<uint64_t>> squares_;  // in units of 2^-24
   SparseArray<std::atomic<uint32_t>> counts_;
-  SparseArray<std::atomic<uint64_t>> used_;  // one bit per row
+  SparseArray<std::atomic<uint64_t>> used_;     // one bit per row
+  SparseArray<std::atomic<uint64_t>> changed_;  // since CopyChangesTo; one bit per row
 };
 
 }  // namespace lampyr

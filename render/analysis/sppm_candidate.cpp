@@ -21,6 +21,9 @@ constexpr double kHopeless = 2, kQuiteHopeless = 6;
 // Error of independent samples over that of Sobol points, which serve photons less than camera paths: 1.0 to 1.55 in
 // nine scenes of scenes/ and of another renderer, 64×64 with 32 samples per pixel.
 constexpr double kGainOfSobol = 1.2;
+// The pilot's radius is that of the average pass of 64. A picture of four times as many, as in some ten seconds, is
+// expected: the error of a sample grows as the radius shrinks.
+constexpr double kMorePasses = 4;
 // Blur takes some light from edges, so that less than this is not told from it.
 constexpr double kTolerated = 0.03;
 
@@ -107,6 +110,7 @@ class Measured {
 struct Counts {
   PassCounts rays;  // of a pass
   uint64_t stored = 0;
+  double growth = 1;  // of the error of a sample, from the passes of the pilot to those expected
   double CostOfSample(const Grid& grid) const { return CostOfSppm(rays, stored, grid.Pixels()); }
 };
 
@@ -123,6 +127,7 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()));
   PilotPasses passes(scene, settings, grid, threads), countedPasses(counted, settings, grid, threads);
   Counts counts;
+  counts.growth = std::pow(kMorePasses, 1 - photons.alpha);
   std::vector<double> values(static_cast<size_t>(grid.Pixels())), last;
   std::vector<std::vector<double>> seen;
   for (uint32_t pass = 0; pass < 2 * pairs; ++pass) {
@@ -141,7 +146,8 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
     if (pass % 2 == 1) measured.Add(last, values);
     last = values;
     if (best && pass % 2 == 1 && pass < 4) {
-      const double worse = measured.Error() / gain * counts.CostOfSample(grid) / (best->error * best->cost);
+      const double worse =
+          measured.Error() * counts.growth / gain * counts.CostOfSample(grid) / (best->error * best->cost);
       if (worse > (pass == 1 ? kQuiteHopeless : kHopeless)) break;
     }
   }
@@ -163,11 +169,12 @@ std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const Rend
   PilotCandidate candidate;
   candidate.integrator = kName;
   candidate.gainOfSobol = gain;
-  candidate.error = std::max(measured.Error() / gain, records.LeastError());
-  candidate.uncertainty = measured.StandardError() / gain;
+  const double toExpected = counts.growth / gain;
+  candidate.error = std::max(measured.Error() * toExpected, records.LeastError());
+  candidate.uncertainty = measured.StandardError() * toExpected;
   candidate.cost = counts.CostOfSample(grid);
   candidate.tileErrors = measured.TileErrors(grid);
-  for (double& error : candidate.tileErrors) error /= gain;
+  for (double& error : candidate.tileErrors) error *= toExpected;
   for (std::vector<double>* tiles :
        {&candidate.secondMoments, &candidate.tileVariances, &candidate.tileMissing, &candidate.tileMergedOnly})
     tiles->resize(grid.Tiles());

@@ -198,7 +198,7 @@ TEST_F(WrongTypes, AreCaughtWithAnAngleConvertedTwice) {
       {"spot", "coneangle", 50, Part::Bounds, {"bounds"}, {"energy"}},
       {"spot", "coneangle", 50, Part::Estimate, {"estimate"}, {}},
       {"spot", "coneangle", 50, Part::Segment, {"estimate", "segment"}, {}},
-      {"sun", "angle", 40, Part::Draws, {"directions"}, {"irradiance"}},
+      {"sun", "angle", 40, Part::Draws, {"directions"}, {}},
       {"sun", "angle", 40, Part::PhotonDraws, {"emission-directions"}, {}},
       {"sun", "angle", 40, Part::DirectPdf, {"directions"}, {"integral", "irradiance", "power"}},
       {"sun", "angle", 40, Part::PhotonPdf, {"emission-directions", "power"}, ofDensity},
