@@ -7,8 +7,7 @@
 //   SkyPoint Look(receiver, local)    radiance and densities, which are positive wherever the radiance is, that for the
 //                                     receiver only in front of it
 //   Color Mean()                      of the radiance over the sphere
-//   float Irradiance(receiver)        estimate, mean of the channels; without a normal: of a surface that faces the
-//   light
+//   float Irradiance(receiver)        estimate, mean of the channels; without a normal: of a surface that faces it
 #pragma once
 
 #include "lights/direction_map.h"

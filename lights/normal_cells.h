@@ -12,7 +12,7 @@ namespace lampyr::normal_cells {
 
 inline constexpr int kSide = 32;
 inline constexpr uint32_t kCount = uint32_t{kSide} * kSide;
-// Sine of the largest angle between two normals of a cell.
+// More than the sine of the angle from any normal of a cell to the nearest of NormalsOf.
 inline constexpr float kReach = 0.13f;
 
 inline uint32_t CellOf(const Normal3& normal) {

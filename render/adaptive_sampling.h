@@ -5,9 +5,9 @@
 // measured; the first pass of a stage has one sample in each pixel, the others follow the rates. A pass always has as
 // many samples, and light paths, as pixels.
 //
-// A stage has random numbers of its own, but for the shutter times of passes with photons (both_paths.cpp says why these
-// may share a sequence). What it adds to a pixel has therefore the expectation of the pixel whatever came before it, and
-// because the film weights stages by their passes (film/film.h), the picture is unbiased.
+// A stage has random numbers of its own. What it adds to a pixel has therefore the expectation of the pixel whatever
+// came before it (both_paths.cpp says why the shutter times of passes with photons may share a sequence), and because
+// the film weights stages by their passes (film/film.h), the picture is unbiased.
 //
 // Rates minimise a quantile of the errors of pixels: the error that a given share of them is below.
 #pragma once

@@ -19,8 +19,9 @@ constexpr int kPassTimes = -2;                            // in the place of the
 // the sampler of the pixels: there are as few as passes. `pass` counts from the beginning of the sequence.
 //
 // The stages of an adaptive render share a sequence that begins with its first pass. Each of them is an aligned block
-// of it, and Owen scrambling puts the times of such a block in random order: a pass of a stage has any time of the
-// shutter with the same probability, whatever the times of earlier stages were, which the rates depend on.
+// of it, which Owen scrambling puts in random order: given the times of earlier stages, which the rates depend on, all
+// passes of a stage have the same distribution of times. What a stage adds to a pixel has therefore an expectation that
+// does not depend on the rates, and over all earlier times that is the pixel's.
 float PassTime(uint64_t seed, uint32_t pass) {
   Sampler sampler(SamplerKind::Sobol, seed);
   sampler.StartPixelSample(0, kPassTimes, pass);

@@ -13,7 +13,7 @@ namespace lampyr {
 namespace {
 
 constexpr float kLargest = 1e30f;
-constexpr size_t kMostEntries = size_t{1} << 22;  // 32 MiB
+constexpr size_t kMostEntries = size_t{1} << 18;  // 2 MiB: there may be many sets of linked lights
 // Fraction of choices without regard to normals (defensive sampling, [Hesterberg95]): a normal of the table stands for
 // those of its cell, and estimates of lights may be 0 where they are not.
 constexpr double kOverall = 0.05;
@@ -82,18 +82,19 @@ FarLights::FarLights(std::span<const PlacedLight> lights, std::span<const uint32
   if (count == 0 || normal_cells::kCount * stride > kMostEntries || !(irradiance_ > 0)) return;
   // Squared: next-event estimation of what scattering finds as well may have few samples without becoming noisy, as its
   // weight falls with their number.
-  std::vector<double> parts;
-  for (const uint32_t light : far) parts.push_back(Sqr(PartOfNextEvent(lights[light], scene)));
+  for (const uint32_t light : far) parts_.push_back(Sqr(PartOfNextEvent(lights[light], scene)));
   sums_.assign(normal_cells::kCount * stride, 0.0);
   ParallelFor(normal_cells::kSide, HardwareThreads(), [&](int row) {
     const auto first = static_cast<uint32_t>(row * normal_cells::kSide);
     for (uint32_t cell = first; cell < first + normal_cells::kSide; ++cell) {
       double* sums = &sums_[cell * stride];
       for (size_t i = 0; i < count; ++i) {
-        // Directions of a moving light are not known here.
+        // Directions of a moving light are not known here, nor is where a light shines that does not shine at the
+        // centre.
         const PlacedLight& placed = lights[lights_[i]];
+        const bool isKnown = !placed.motion && weights[i] == raised[i];
         const double weight =
-            parts[i] * (placed.motion ? static_cast<double>(weights[i]) : EstimateInCell(placed, scene, cell));
+            parts_[i] * (isKnown ? EstimateInCell(placed, scene, cell) : static_cast<double>(raised[i]));
         sums[i + 1] = sums[i] + weight;
       }
     }

@@ -2,6 +2,7 @@
 // receiver's normal alone. It is tabulated by normal.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -30,10 +31,15 @@ class FarLights {
   };
   Place PlaceOf(const Normal3& normal, bool isTransmissive) const;
 
-  // Estimated irradiance by all of them together, W/m², mean of the channels.
+  // Estimated irradiance by all of them together, W/m², mean of the channels; at a place with a normal without what
+  // scattering finds.
   double Irradiance(const Place& place) const;
   // Where along segments in media, which are lit from all sides alike.
   double Irradiance() const { return irradiance_; }
+  // Estimated irradiance over Irradiance(place), which leaves out what scattering finds.
+  double Whole(const Place& place, uint32_t index) const {
+    return place.front == Place::kNone ? 1 : 1 / std::max(parts_[index], 1e-3);
+  }
 
   struct Choice {
     uint32_t index;
@@ -53,6 +59,7 @@ class FarLights {
   // By normal: sums of the irradiances of the lights before each one, and of all at the end. Empty: no light depends on
   // the normal, or there are too many for a table.
   std::vector<double> sums_;
+  std::vector<double> parts_;  // by light: factor of its irradiance in sums_
 };
 
 }  // namespace lampyr

@@ -49,7 +49,7 @@ class LightLearning {
 
   // Copies the state of another object of the same scene. Not concurrently with the use of either.
   void CopyFrom(const LightLearning& other);
-  // The same to `copy`, which must be equal to the state of this object at the previous call, or to the state that this
+  // The same to `copy`, the only one that this is called with, which must be equal to the state of this object at the previous call, or to the state that this
   // one was copied from: only rows that have changed since are copied.
   void CopyChangesTo(LightLearning& copy);
 

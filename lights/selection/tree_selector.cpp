@@ -99,7 +99,10 @@ class TreeSelector final : public LightSelector {
       const FarLights::Place normal = farLights_.PlaceOf(place.normal, place.isTransmissive);
       const double expected =
           farLights_.Irradiance(normal) * static_cast<double>(farLights_.Probability(normal, *at).value);
-      if (expected > 0) learning.Record(place.region, LightTree::kNone, 0, irradiance / expected);
+      if (expected > 0) {
+        const double whole = farLights_.Whole(normal, *at);
+        learning.Record(place.region, LightTree::kNone, 0, irradiance / (expected * whole));
+      }
       return;
     }
     if constexpr (std::is_same_v<Search, LightTree>) {

@@ -13,9 +13,9 @@ namespace {
 constexpr double kBelowOne = 0x1.fffffffffffffp-1;
 // Tolerance of the sine of a cell's angle: of the outline, which is sampled, and of rounding.
 constexpr float kMargin = 0.03f;
-// Least density of a cell that emits and is seen, over that of cosθ/π. Light that scattering finds less often than by
-// that, as by glossy lobes, and light beside a sun that a table by normals cannot tell to be behind the surface, has a
-// bounded weight.
+// Least density of a cell that emits, over the estimate of cosθ/π for it: for light that scattering finds less often
+// than by cosθ/π, as by glossy lobes, and for light beside a sun of which the table by normals cannot tell that it is
+// behind the surface.
 constexpr float kLeast = 0.05f;
 constexpr float kSmallest = 1e-30f;  // lower bound of mean cosines, which are divided by
 constexpr int kParts = 8;            // parts of each side of a cell that have a direction each
@@ -60,7 +60,7 @@ SkyCells::SkyCells(const ColorTable& table, const Directions& direction)
   });
 }
 
-// Mean over the normals of a cell of them. What one of them may see has a positive weight for all.
+// Mean over the normals of a cell of them. What another normal of the cell may see counts as seen.
 void SkyCells::TabulateBlocks(uint32_t cell) {
   const auto normals = normal_cells::NormalsOf(cell);
   BlocksSeen& seen = seen_[cell];
@@ -131,13 +131,15 @@ SkyCells::Moments SkyCells::MomentsOfCell(const ColorTable& table, int column, i
     const Vector3* corner = &outline[static_cast<size_t>(k / kParts * (kParts + 1) + k % kParts)];
     const Vector3d one(corner[kParts + 2] - corner[0]), other(corner[kParts + 1] - corner[1]);
     cell.solidAngle += 0.5 * glm::length(glm::cross(one, other)) / 3.14159265358979323846;
+    cell.leastVariance = std::max({cell.leastVariance, glm::dot(one, one), glm::dot(other, other)});
   }
   return cell;
 }
 
 void SkyCells::Set(Block& block, int lane, const Moments& moments, const Outline& outline) {
   if (!(moments.weight > 0)) return;
-  const Vector3 mean(moments.sum / moments.weight);
+  const Vector3d exact = moments.sum / moments.weight;
+  const Vector3 mean(exact);
   const float length = glm::length(mean);
   float cosine = length > 0 ? 1.0f : -1.0f;
   for (const Vector3& direction : outline)
@@ -147,7 +149,7 @@ void SkyCells::Set(Block& block, int lane, const Moments& moments, const Outline
   block.meanX[lane] = mean.x;
   block.meanY[lane] = mean.y;
   block.meanZ[lane] = mean.z;
-  block.variance[lane] = std::max(1 - length * length, 0.0f);
+  block.variance[lane] = static_cast<float>(std::max(1 - glm::dot(exact, exact), moments.leastVariance));
   // Of more than a hemisphere a part is always in front.
   block.behind[lane] = cosine > 0 ? -length * (std::sqrt(1 - cosine * cosine) + kMargin) : -2.0f;
 }
@@ -175,7 +177,9 @@ void SkyCells::Weights::Sum() {
 float SkyCells::WeighBlocks(const SkyReceiver& receiver, Weights& weights) const {
   const BlocksSeen& front = seen_[normal_cells::CellOf(receiver.normal)];
   const BlocksSeen* back = receiver.isTransmissive ? &seen_[normal_cells::CellOf(-receiver.normal)] : nullptr;
-  for (int i = 0; i < kLanes; ++i) weights.of[i] = front.weight[i] + (back ? back->weight[i] : 0.0f);
+  // The sides have as much of the samples as of the irradiance.
+  const float ofFront = back ? front.cosine : 1.0f, ofBack = back ? back->cosine : 0.0f;
+  for (int i = 0; i < kLanes; ++i) weights.of[i] = ofFront * front.weight[i] + (back ? ofBack * back->weight[i] : 0.0f);
   weights.Sum();
   return front.cosine + (back ? back->cosine : 0.0f);
 }

@@ -5,7 +5,8 @@
 // Scattering finds the sky, too. With as many directions sampled by scattering, by cosθ/π, as by next-event estimation,
 // the balance heuristic estimates the irradiance with the sum of the two densities; that is proportional to radiance
 // times cosine if a cell with the share e, and the share b of cosθ/π, is selected with the probability 2e - b
-// ([Karlik19]). A lower bound keeps every cell that emits and is seen possible. An even sky has 2e - b = e.
+// ([Karlik19]). A lower bound keeps every cell that emits and is seen possible. Under an even sky e = b,
+// and cells are selected by the cosine.
 //
 // The irradiance of a cell is its share of the sky's radiance times an estimate of the mean of max(0, cosθ) over the
 // cell, as in light selection (selection/importance.h). Cells are selected by way of 4 × 4 blocks of 4 × 4 cells, whose
@@ -74,7 +75,9 @@ class SkyCells {
   };
   struct Moments {
     double weight = 0, solidAngle = 0;  // as in Block
-    Vector3d sum{0.0};                  // of directions, weighted
+    // A sun may be anywhere in a part that is represented by its middle: the squared diagonal of the largest part.
+    double leastVariance = 0;
+    Vector3d sum{0.0};  // of directions, weighted
     void Add(double w, const Vector3d& direction) { weight += w, sum += w * direction; }
     void Add(const Moments& other) { weight += other.weight, solidAngle += other.solidAngle, sum += other.sum; }
   };

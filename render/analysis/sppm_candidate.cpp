@@ -24,6 +24,9 @@ constexpr double kGainOfSobol = 1.2;
 // The pilot's radius is that of the average pass of 64. A picture of four times as many, as in some ten seconds, is
 // expected: the error of a sample grows as the radius shrinks.
 constexpr double kMorePasses = 4;
+// Squared error of such a picture over that of its noise: the pilot does not see how much photons blur. 1.5 in a
+// Cornell box, 3 in scenes/rainbow.
+constexpr double kBlur = 2;
 // Blur takes some light from edges, so that less than this is not told from it.
 constexpr double kTolerated = 0.03;
 
@@ -58,6 +61,11 @@ class Measured {
       for (size_t pair = 0; pair < pairs_.size(); ++pair)
         pairs_[pair][i] += 0.5 * Squared(passes[2 * pair][i] - passes[2 * pair + 1][i]) * weight;
     }
+  }
+  // Multiplies the errors so far by a factor.
+  void Scale(double factor) {
+    for (std::vector<double>& pair : pairs_)
+      for (double& error : pair) error *= factor;
   }
   // Leaves out the thousandth of the pixels that are noisiest: a firefly there would decide alone.
   void LeaveOutNoisiest() {
@@ -110,7 +118,7 @@ class Measured {
 struct Counts {
   PassCounts rays;  // of a pass
   uint64_t stored = 0;
-  double growth = 1;  // of the error of a sample, from the passes of the pilot to those expected
+  double growth = 1;  // of the squared error of a sample, from what the pilot sees to the picture that is expected
   double CostOfSample(const Grid& grid) const { return CostOfSppm(rays, stored, grid.Pixels()); }
 };
 
@@ -127,7 +135,7 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()));
   PilotPasses passes(scene, settings, grid, threads), countedPasses(counted, settings, grid, threads);
   Counts counts;
-  counts.growth = std::pow(kMorePasses, 1 - photons.alpha);
+  counts.growth = kBlur * std::pow(kMorePasses, 1 - photons.alpha);
   std::vector<double> values(static_cast<size_t>(grid.Pixels())), last;
   std::vector<std::vector<double>> seen;
   for (uint32_t pass = 0; pass < 2 * pairs; ++pass) {
@@ -152,6 +160,7 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
     }
   }
   measured.LeaveOutNoisiest();
+  measured.Scale(counts.growth);
   measured.AddSeen(seen);
   return counts;
 }
@@ -169,12 +178,11 @@ std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const Rend
   PilotCandidate candidate;
   candidate.integrator = kName;
   candidate.gainOfSobol = gain;
-  const double toExpected = counts.growth / gain;
-  candidate.error = std::max(measured.Error() * toExpected, records.LeastError());
-  candidate.uncertainty = measured.StandardError() * toExpected;
+  candidate.error = std::max(measured.Error() / gain, records.LeastError());
+  candidate.uncertainty = measured.StandardError() / gain;
   candidate.cost = counts.CostOfSample(grid);
   candidate.tileErrors = measured.TileErrors(grid);
-  for (double& error : candidate.tileErrors) error *= toExpected;
+  for (double& error : candidate.tileErrors) error /= gain;
   for (std::vector<double>* tiles :
        {&candidate.secondMoments, &candidate.tileVariances, &candidate.tileMissing, &candidate.tileMergedOnly})
     tiles->resize(grid.Tiles());

@@ -20,7 +20,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr std::string_view kOpenExr = "openexr", kPng = "png";
+constexpr std::string_view kOpenExr = "openexr", kPng = "png", kRadiance = "hdr";
 
 // Applies `decode` to all channels except alpha. 8-bit values use a table: a texture has millions of them.
 template <class Decode>
@@ -53,7 +53,11 @@ void CheckReadable(const std::filesystem::path& path) {
 }
 
 EncodedImage ReadEncoded(const std::filesystem::path& path, const ImageKind& kind) {
-  return kind.format == kPng ? ReadPng(path) : ReadThroughModule(path, kind);
+  if (kind.format == kPng) return ReadPng(path);
+  if (kind.format == kRadiance) {
+    if (std::optional<Image> image = ReadUsualRadiance(path)) return {std::move(*image), 0, false};
+  }
+  return ReadThroughModule(path, kind);
 }
 
 // Identity up to s = kShoulderStart, then an exponential that continues it with the same slope and tends to 1:

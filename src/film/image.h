@@ -1,5 +1,6 @@
-// Images in memory, and their input and output. OpenEXR and libpng are used directly; all other formats go through
-// OpenImageIO, which is loaded when such a file is first used (src/film/image_module.cpp).
+// Images in memory, and their input and output. OpenEXR and libpng are used directly, and the usual Radiance pictures
+// are read here; all other formats go through OpenImageIO, which is loaded when such a file is first used
+// (src/film/image_module.cpp).
 #pragma once
 
 #include <array>

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct EncodedImage {
 };
 // PNG files, without the module.
 EncodedImage ReadPng(const std::filesystem::path& path);
+// Radiance pictures (hdr) of the usual kind, without the module. nullopt: another kind, or damaged.
+std::optional<Image> ReadUsualRadiance(const std::filesystem::path& path);
 EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind);
 
 struct JpegSize {

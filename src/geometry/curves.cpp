@@ -188,9 +188,9 @@ class PlacedCurve {
     if (parameters_.kind == CurveSet::Kind::Cylinder) return 1;
     if (parameters_.kind == CurveSet::Kind::Flat)
       return PartsOfFlat(segment, ThinnestOf(RadiusAt(i, 0), RadiusAt(i, 1)));
-    const std::vector<Normal3>& normals = parameters_.normals;
-    const bool hasNormals = normals.size() == count_ + 1;
-    return PartsOfRibbon(segment, hasNormals ? AngleBetween(Vector3d(normals[i]), Vector3d(normals[i + 1])) : 0);
+    if (parameters_.normals.size() != count_ + 1) return 1;  // an error, when the normals are read
+    const auto placed = [&](size_t joint) { return parameters_.toRender.Normal(Vector3d(parameters_.normals[joint])); };
+    return PartsOfRibbon(segment, AngleBetween(placed(i), placed(i + 1)));
   }
 
  private:

@@ -29,7 +29,8 @@ struct CurveParameters {
 // Widths scale by the transform's mean scale (the cube root of its determinant). Throws Error.
 CurveSet MakeCurves(const CurveParameters& parameters);
 
-// Number of segments that MakeCurves returns: bent ones of flat curves are divided, into 256 at most. Throws Error.
+// Number of segments that MakeCurves returns: bent ones of flat curves are divided, into 256 at most, and
+// those of ribbons, into 64. Throws Error.
 size_t CountDividedSegments(const CurveParameters& parameters);
 
 // Sets position, error, normals, uv and tangents of the hit at origin + t·direction with curve parameter `u`, in the

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "math/frame.h"
 #include "sampling/equal_area.h"
 #include "sampling/rng.h"
 #include "suite/statistics.h"
@@ -24,6 +25,7 @@ std::vector<Picture> Pictures() {
           {"uneven sides", 37, 19, noise},
           {"sun", 96, 48, [&](int x, int y) { return x == 50 && y == 9 ? 1e9f : 0.5f; }},
           {"one bright texel of sixteen", 4, 4, [](int x, int y) { return x == 2 && y == 1 ? 1e9f : 0.5f; }},
+          {"a sun alone, on black", 1024, 512, [](int x, int y) { return x == 301 && y == 250 ? 1.0f : 0.0f; }},
           {"half black", 32, 32, [noise](int x, int y) { return x < 16 ? 0.0f : noise(x, y); }}};
 }
 
@@ -56,7 +58,14 @@ TEST(SkyCells, TexelsAreSampledByTheirDensity) {
   for (const Picture& picture : Pictures()) {
     const ColorTable table = TableOf(picture);
     const SkyCells cells(table, [&](const Point2& uv) { return DirectionAt(picture, uv); });
-    for (const SkyReceiver& receiver : ReceiversOf()) {
+    std::vector<SkyReceiver> receivers = ReceiversOf();
+    // Just in front of the sun, and just behind it.
+    const Vector3 sun = DirectionAt(picture, {301.5f / 1024, 250.5f / 512});
+    for (const float tilt : {0.02f, 0.004f, -0.02f}) {
+      receivers.push_back({glm::normalize(Frame::FromNormal(sun).x + tilt * sun), false});
+      receivers.push_back({glm::normalize(Frame::FromNormal(sun).y - tilt * sun), true});
+    }
+    for (const SkyReceiver& receiver : receivers) {
       const std::string what = std::string(picture.name) + (receiver.isTransmissive ? ", both sides" : "");
       const auto width = static_cast<size_t>(picture.width), texels = width * static_cast<size_t>(picture.height);
       constexpr int kDraws = 20000;
@@ -70,14 +79,17 @@ TEST(SkyCells, TexelsAreSampledByTheirDensity) {
           const Point2 middle((static_cast<float>(x) + 0.5f) / static_cast<float>(picture.width),
                               (static_cast<float>(y) + 0.5f) / static_cast<float>(picture.height));
           const float cosine = glm::dot(DirectionAt(picture, middle), receiver.normal);
-          const bool isSeen = picture.value(x, y) > 0 && (cosine > 0 || (receiver.isTransmissive && cosine != 0));
+          const bool isSeen = picture.value(x, y) > 0 && (receiver.isTransmissive ? std::abs(cosine) : cosine) > 1e-3f;
           if (isSeen) {
             EXPECT_GT(p, 0) << what << " " << x << " " << y;
           }
         }
       }
       EXPECT_LT(sum, 1 + 1e-5) << what;
-      EXPECT_GT(sum, 0.9) << what;
+      // Where a sun alone is just behind the surface, its block is selected in vain.
+      if (picture.width != 1024) {
+        EXPECT_GT(sum, 0.9) << what;
+      }
       // The last entry is of draws without a sample: a block may be selected of which nothing is in front.
       expected.back() = kDraws * std::max(1 - sum, 0.0);
       Rng rng(5);

@@ -7,10 +7,13 @@
 
 #include <cmath>
 #include <csignal>
+#include <fstream>
+#include <optional>
 #include <random>
 
 #include "base/error.h"
 #include "film/image_colors.h"
+#include "film/image_formats.h"
 #include "film/srgb.h"
 #include "support/temporary_folder.h"
 
@@ -216,6 +219,48 @@ TEST(Hdr, ReadsTheSkyOfTheReferenceScenes) {
     }
   }
   EXPECT_GT(largest, 1.0f);  // linear: the sun is brighter than white
+}
+
+// Our reader of Radiance pictures gives what OpenImageIO gives, and leaves what it does not know to that.
+TEST(Hdr, IsReadAsOpenImageIoReadsIt) {
+  const TemporaryFolder folder;
+  std::vector<std::filesystem::path> files = {std::filesystem::path(LAMPYR_SOURCE_DIR) / "scenes/data/sky-noon.hdr",
+                                              std::filesystem::path(LAMPYR_SHARED_DATA) / "peer/sky.hdr"};
+  size_t compared = 0;
+  for (const std::filesystem::path& path : files) {
+    if (!std::filesystem::exists(path)) continue;
+    ++compared;
+    const std::optional<Image> own = ReadUsualRadiance(path);
+    ASSERT_TRUE(own) << path;
+    const EncodedImage other = ReadThroughModule(path, FindImageKind(path));
+    EXPECT_EQ(other.integerBits, 0);
+    EXPECT_FALSE(other.saysSrgb);
+    EXPECT_EQ(own->channels, other.image.channels);
+    EXPECT_EQ(own->width, other.image.width);
+    EXPECT_EQ(own->data, other.image.data) << path;
+  }
+  EXPECT_GT(compared, 0u);
+  const std::string whole = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n\2\2" + std::string("\0\10", 2) +
+                            "\210\100\210\40\4\1\2\3\4\204\5\210\201";
+  const auto read = [&](const std::string& text) {
+    std::ofstream(folder / "a.hdr", std::ios::binary) << text;
+    return ReadUsualRadiance(folder / "a.hdr");
+  };
+  const std::optional<Image> image = read(whole);
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->At(3, 0, 0), 0x40 * 0x1p-7f);
+  EXPECT_EQ(image->At(3, 0, 1), 0x20 * 0x1p-7f);
+  EXPECT_EQ(image->At(2, 0, 2), 3 * 0x1p-7f);
+  EXPECT_EQ(image->At(7, 0, 2), 5 * 0x1p-7f);
+  for (size_t length = 0; length < whole.size(); ++length) EXPECT_FALSE(read(whole.substr(0, length))) << length;
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_FALSE(read(changed("rgbe", "xyze")));
+  EXPECT_FALSE(read(changed("-Y 1 +X 8", "+Y 1 +X 8")));
+  EXPECT_FALSE(read(changed("-Y 1 +X 8", "-Y 1 +X 9")));
+  EXPECT_FALSE(read(changed("-Y 1 +X 8", "-Y 2 +X 8")));
 }
 
 // Rendering needs colours in gamut; comparing pictures needs the linear map.

@@ -103,7 +103,6 @@ TEST(Curves, BentFlatOnesKeepTheirWidth) {
   }
 }
 
-// A normal along the curve says nothing about where a ribbon faces; the ribbon is there all the same.
 // Rays along z at four fifths of the half width beside the axis, and one and a half half widths beside it.
 void ExpectFullWidth(const CurveSet& curves) {
   const GeometryScene scene(SceneOf(ToShape(CurveSet(curves))));
@@ -131,9 +130,15 @@ TEST(Curves, BentRibbonsAreOfFullWidth) {
   ExpectFullWidth(MakeCurves(p));
   p.points = {{0, -1, 0}, {0, -0.2f, 0}, {0.1f, 0.6f, 0}, {0.8f, 0.9f, 0}};
   ExpectFullWidth(MakeCurves(p));
+  // Normals that differ little as given, and much as placed.
+  p.points = {{0, 0, 0}, {0.3f, 0, 0}, {0.6f, 0, 0}, {1, 0, 0}};
+  p.normals = {Normal3(0, 0.1f, 1), Normal3(0, -0.1f, 1)};
+  p.toRender = Transform::Scale(Vector3d(1, 1, 10));
+  EXPECT_GT(MakeCurves(p).segments.size(), 4u);
 }
 
-// The ribbon rises to z at its end, where its normal is along it.
+// A normal along the curve says nothing about where a ribbon faces. This one rises to z at its end, where its normal is
+// along it.
 TEST(Curves, RibbonsWithANormalAlongThem) {
   CurveParameters p;
   p.kind = CurveSet::Kind::Ribbon;
