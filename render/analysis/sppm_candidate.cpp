@@ -21,12 +21,6 @@ constexpr double kHopeless = 2, kQuiteHopeless = 6;
 // Error of independent samples over that of Sobol points, which serve photons less than camera paths: 1.0 to 1.55 in
 // nine scenes of scenes/ and of another renderer, 64×64 with 32 samples per pixel.
 constexpr double kGainOfSobol = 1.2;
-// The pilot's radius is that of the average pass of 64. A picture of four times as many, as in some ten seconds, is
-// expected: the error of a sample grows as the radius shrinks.
-constexpr double kMorePasses = 4;
-// Squared error of such a picture over that of its noise: the pilot does not see how much photons blur. 1.5 in a
-// Cornell box, 3 in scenes/rainbow.
-constexpr double kBlur = 2;
 // Blur takes some light from edges, so that less than this is not told from it.
 constexpr double kTolerated = 0.03;
 
@@ -61,11 +55,6 @@ class Measured {
       for (size_t pair = 0; pair < pairs_.size(); ++pair)
         pairs_[pair][i] += 0.5 * Squared(passes[2 * pair][i] - passes[2 * pair + 1][i]) * weight;
     }
-  }
-  // Multiplies the errors so far by a factor.
-  void Scale(double factor) {
-    for (std::vector<double>& pair : pairs_)
-      for (double& error : pair) error *= factor;
   }
   // Leaves out the thousandth of the pixels that are noisiest: a firefly there would decide alone.
   void LeaveOutNoisiest() {
@@ -118,7 +107,6 @@ class Measured {
 struct Counts {
   PassCounts rays;  // of a pass
   uint64_t stored = 0;
-  double growth = 1;  // of the squared error of a sample, from what the pilot sees to the picture that is expected
   double CostOfSample(const Grid& grid) const { return CostOfSppm(rays, stored, grid.Pixels()); }
 };
 
@@ -135,7 +123,6 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()));
   PilotPasses passes(scene, settings, grid, threads), countedPasses(counted, settings, grid, threads);
   Counts counts;
-  counts.growth = kBlur * std::pow(kMorePasses, 1 - photons.alpha);
   std::vector<double> values(static_cast<size_t>(grid.Pixels())), last;
   std::vector<std::vector<double>> seen;
   for (uint32_t pass = 0; pass < 2 * pairs; ++pass) {
@@ -154,13 +141,11 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
     if (pass % 2 == 1) measured.Add(last, values);
     last = values;
     if (best && pass % 2 == 1 && pass < 4) {
-      const double worse =
-          measured.Error() * counts.growth / gain * counts.CostOfSample(grid) / (best->error * best->cost);
+      const double worse = measured.Error() / gain * counts.CostOfSample(grid) / (best->error * best->cost);
       if (worse > (pass == 1 ? kQuiteHopeless : kHopeless)) break;
     }
   }
   measured.LeaveOutNoisiest();
-  measured.Scale(counts.growth);
   measured.AddSeen(seen);
   return counts;
 }
