@@ -138,13 +138,14 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
   };
   const std::vector<Vector3d> directions = DrawDirections(rng_, options_.samples, draw);
   const std::vector<Vector3d> hints = DrawDirections(rng_, kHints, draw);
-  // Of the directions that can be sampled: those behind a receiver need not be.
+  // Directions behind a receiver need not be sampled.
   DirectionQuadrature quadrature(
       CapAround(hints), hints,
       [&](const Vector3d& direction) -> Integrands {
         const auto e = light_.EvaluateSamples(subject_.context, HitAlong(Rounded(direction), P), P);
         if (!e || IsBlack(*e)) return {};
-        return {Value(e->pdfDirect), e->pdfDirect.IsZero() ? 0.0 : Emitted(subject_, *e)};
+        const bool counts = CosineTo(direction) > 0 || !e->pdfDirect.IsZero();
+        return {Value(e->pdfDirect), counts ? Emitted(subject_, *e) : 0.0};
       },
       rng_, options_.effort* DirectionQuadrature::kBudget);
   Estimate share, fluence;

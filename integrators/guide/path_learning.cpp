@@ -21,7 +21,7 @@ constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
 // as tracing it, so that learning is a few percent of a short render, and less of a long one. A guide in use gets more:
 // better ones pay for more records.
 constexpr double kFirstPaths = 6144, kPathsPerSample = 1024, kShareOfPaths = 1.0 / 48, kMoreInUse = 6;
-// Largest share of the paths after the first sample, for small pictures.
+// Largest share of the paths after the first sample, for pictures that are not tiny.
 constexpr double kLargestShare = 0.25;
 // Events kept of a path where those numbers apply. Fitting them is most of what a path costs; where paths keep fewer,
 // more paths are recorded: so many times at most.
@@ -74,7 +74,7 @@ double PathLearning::Fraction() const {
     perSample = std::max(perSample, kPathsPerSample * std::clamp(more, 1.0, kMostMore));
   }
   if (isUsed) perSample *= kMoreInUse;
-  if (samples_ > 0) perSample = std::min(perSample, kLargestShare * pixels);
+  if (samples_ > 0) perSample = std::min(perSample, std::max(kLargestShare * pixels, kPathsPerSample));
   return std::min(passes * perSample, kMostPaths) / (passes * pixels);
 }
 

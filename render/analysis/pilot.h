@@ -47,7 +47,7 @@ struct PilotCandidate {
   // grows as the radius shrinks, by 1.6 from the 64 passes of which the pilot has the radius to 256; with the blur the
   // squared error of 350 passes was 2.2 times that of the pilot in a Cornell box, and 4.5 times in scenes/rainbow.
   double MostErrorTimesCost() const {
-    constexpr double kBlur = 1.1, kWideBlur = 1.2, kBlurOfSppm = 3.5;
+    constexpr double kBlur = 1.1, kWideBlur = 1.2, kBlurOfSppm = 2.5;
     const double blur = counts.startsWide      ? kWideBlur
                         : integrator == "vcm"  ? kBlur
                         : integrator == "sppm" ? kBlurOfSppm

@@ -129,7 +129,7 @@ TEST(Strands, AreLitWhereNothingIsConnectedNorMerged) {
   overrides.seed = 1000;
   overrides.values["connect"] = false;
   overrides.values["radius"] = 0.1;
-  const Agreement result = CompareReplicas(RenderReplicas(text, "vcm", 12, 1024, overrides), path, 6, 1e-3);
+  const Agreement result = CompareReplicas(RenderReplicas(text, "vcm", 12, 1280, overrides), path, 6, 1e-3);
   std::printf("vcm without connections: bias %+.3f %% +- %.3f %%\n", 100 * result.bias, 196 * result.biasError);
   EXPECT_TRUE(result.Agrees()) << "largest z " << result.largestZ;
   EXPECT_LT(result.biasError, 0.01) << "too noisy";

@@ -181,7 +181,9 @@ TEST_P(FirstHits, HaveTheDensitiesOfTheOtherTechniques) {
       const auto hit = photon ? FirstHitOf(*built.scene.geometry, *photon) : std::nullopt;
       if (!hit || hit->primitive != 0) continue;
       const SurfacePoint point = built.scene.geometry->GetSurfacePoint(photon->ray, *hit);
-      const Receiver receiver{point.position, point.Ns, false};
+      // On the side that the photon meets: behind a receiver there is no density.
+      const Normal3 normal = glm::dot(point.Ns, photon->ray.direction) > 0 ? -point.Ns : point.Ns;
+      const Receiver receiver{point.position, normal, false};
       const auto firstHit = lighting.EvaluateFirstHit(*photon, receiver);
       ASSERT_TRUE(firstHit) << light.name;
       const auto again = FindAgain(built, lighting, *photon, point, receiver);

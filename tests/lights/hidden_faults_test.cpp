@@ -112,7 +112,7 @@ TEST_F(HiddenFaults, WhereFewSamplesGo) {
 }
 
 TEST_F(HiddenFaults, WhereNothingShines) {
-  ExpectEach(kDensityPart, {{HiddenFault::PdfWhereDark, {"dome", "window"}, {"integral"}, {"directions"}}});
+  ExpectEach(kDensityPart, {{HiddenFault::PdfWhereDark, {"dome", "window"}, {"integral"}, {"directions", "irradiance"}}});
 }
 
 TEST_F(HiddenFaults, InDirectionsOfPhotons) {
