@@ -197,6 +197,17 @@ void SuiteRun::CheckParametersOf(const SuiteCase& suiteCase, const SuiteSubject&
   suite::CheckEdit(subject, origin, report);
 }
 
+namespace {
+
+// A portal is given in world space: it stays where it was built, in its size, wherever the light is placed.
+BoundingSphere SceneAround(const LightTransform& placed, const LightTransform& built, bool hasPortal) {
+  const float radius = 3 * MaxAbsComponent(placed.toRender.linear[0]);
+  if (hasPortal) return {built.toRender.translation, std::max(radius, 4.0f)};
+  return {placed.toRender.translation, radius};
+}
+
+}  // namespace
+
 // `refusal`: receives the error of a light that refuses the shape.
 SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) const {
   // Each case has its own lists, because these record their use and cases run in parallel.
@@ -223,12 +234,7 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) co
   subject.isThorough = suiteCase.looksClosely;
   subject.model = model.get();
   subject.context.transform = &placed;
-  subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
-  // A portal is given in world space: it stays where it was built, in its size, wherever the light is placed.
-  if (parameters.Find("portal")) {
-    subject.context.scene.center = build.transform.toRender.translation;
-    subject.context.scene.radius = std::max(subject.context.scene.radius, 4.0f);
-  }
+  subject.context.scene = SceneAround(placed, build.transform, parameters.Find("portal"));
   subject.context.bidirectional = true;
   std::unique_ptr<Light> light;
   try {
