@@ -8,8 +8,8 @@
 
 namespace lampyr {
 
-// What a sky lights, in its local space (LightContext::receiverNormal). Without a normal, directions are sampled as
-// photons are.
+// The receiver of a sky's light (LightContext::receiverNormal), in the local space of the sky. Without a normal its
+// directions are sampled like those of photons.
 struct SkyReceiver {
   Vector3 normal{0.0f};  // unit, or 0
   bool isTransmissive = false;

@@ -34,7 +34,7 @@ class FarLights {
   // Estimated irradiance by all of them together, W/m², mean of the channels; at a place with a normal without what
   // scattering finds.
   double Irradiance(const Place& place) const;
-  // Where along segments in media, which are lit from all sides alike.
+  // The same for segments in media, where light counts from all directions alike.
   double Irradiance() const { return irradiance_; }
   // Estimated irradiance over Irradiance(place), which leaves out what scattering finds.
   double Whole(const Place& place, uint32_t index) const {
@@ -56,8 +56,8 @@ class FarLights {
   std::vector<uint32_t> lights_;
   AliasTable overall_;  // without regard to normals
   double irradiance_ = 0;
-  // By normal: sums of the irradiances of the lights before each one, and of all at the end. Empty: no light depends on
-  // the normal, or there are too many for a table.
+  // Table by normal: cumulated irradiances, starting with 0 for each normal. Empty if no table was made: there is no
+  // irradiance, or there are too many lights.
   std::vector<double> sums_;
   std::vector<double> parts_;  // by light: factor of its irradiance in sums_
 };

@@ -49,8 +49,8 @@ class LightLearning {
 
   // Copies the state of another object of the same scene. Not concurrently with the use of either.
   void CopyFrom(const LightLearning& other);
-  // The same to `copy`, the only one that this is called with, which must be equal to the state of this object at the previous call, or to the state that this
-  // one was copied from: only rows that have changed since are copied.
+  // Copies to `copy` the rows that have changed since the previous call. `copy` must be equal to the state of this
+  // object at that call, or be what this object was copied from; it is always the same one.
   void CopyChangesTo(LightLearning& copy);
 
   // Saves factors and records. Not concurrently with selection or recording.

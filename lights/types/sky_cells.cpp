@@ -150,7 +150,7 @@ void SkyCells::Set(Block& block, int lane, const Moments& moments, const Outline
   block.meanY[lane] = mean.y;
   block.meanZ[lane] = mean.z;
   block.variance[lane] = static_cast<float>(std::max(1 - glm::dot(exact, exact), moments.leastVariance));
-  // Of more than a hemisphere a part is always in front.
+  // A cell of more than a hemisphere always has a part in front of the surface.
   block.behind[lane] = cosine > 0 ? -length * (std::sqrt(1 - cosine * cosine) + kMargin) : -2.0f;
 }
 

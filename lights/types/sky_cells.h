@@ -102,7 +102,7 @@ class SkyCells {
   std::array<int, kSide + 1> firstColumn_{}, firstRow_{};
   std::array<Block, kBlocks * kBlocks> cells_;
   std::vector<BlocksSeen> seen_ = std::vector<BlocksSeen>(normal_cells::kCount);  // by normal
-  // By column of cells: sums of the density of the rows above, within that column; one more at the end.
+  // Cumulated density of the rows within each column of cells, starting with 0 for each column.
   std::vector<double> strips_;
   std::array<double, size_t{kSide} * kSide> share_{};  // of a cell in the table
 };

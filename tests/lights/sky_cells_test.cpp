@@ -86,7 +86,7 @@ TEST(SkyCells, TexelsAreSampledByTheirDensity) {
         }
       }
       EXPECT_LT(sum, 1 + 1e-5) << what;
-      // Where a sun alone is just behind the surface, its block is selected in vain.
+      // A block whose only sun is just behind the surface is selected without effect.
       if (picture.width != 1024) {
         EXPECT_GT(sum, 0.9) << what;
       }
