@@ -125,13 +125,13 @@ double FarLights::Irradiance(const Place& place) const {
 }
 
 // Not inlined: the same receiver always gives the same bits.
-[[gnu::noinline]] double FarLights::ProbabilityOf(const Place& place, uint32_t index) const {
-  const auto overall = static_cast<double>(overall_.Probability(index).value);
+[[gnu::noinline]] PdfDiscrete FarLights::Probability(const Place& place, uint32_t index) const {
+  const PdfDiscrete overall = overall_.Probability(index);
   if (place.front == Place::kNone) return overall;
   const double sum = WeightUpTo(place, lights_.size());
   if (!(sum > 0)) return overall;
   const double weight = WeightUpTo(place, index + 1) - WeightUpTo(place, index);
-  return kOverall * overall + (1 - kOverall) * weight / sum;
+  return PdfDiscrete(static_cast<float>(kOverall * static_cast<double>(overall.value) + (1 - kOverall) * weight / sum));
 }
 
 FarLights::Choice FarLights::Select(const Place& place, double u) const {
@@ -153,10 +153,6 @@ FarLights::Choice FarLights::Select(const Place& place, double u) const {
   }
   const AliasTable::Result choice = overall_.Sample(sum > 0 ? std::min(u / kOverall, 0x1.fffffffffffffp-1) : u);
   return {choice.index, Probability(place, choice.index), choice.u};
-}
-
-PdfDiscrete FarLights::Probability(const Place& place, uint32_t index) const {
-  return PdfDiscrete(static_cast<float>(ProbabilityOf(place, index)));
 }
 
 }  // namespace lampyr

@@ -34,7 +34,7 @@ class FarLights {
   // Estimated irradiance by all of them together, W/m², mean of the channels; at a place with a normal without what
   // scattering finds.
   double Irradiance(const Place& place) const;
-  // The same for segments in media, where light counts from all directions alike.
+  // Estimated irradiance by all of them without regard to normals: for segments in media.
   double Irradiance() const { return irradiance_; }
   // Estimated irradiance over Irradiance(place), which leaves out what scattering finds.
   double Whole(const Place& place, uint32_t index) const {
@@ -51,7 +51,6 @@ class FarLights {
 
  private:
   double WeightUpTo(const Place& place, size_t index) const;
-  double ProbabilityOf(const Place& place, uint32_t index) const;
 
   std::vector<uint32_t> lights_;
   AliasTable overall_;  // without regard to normals

@@ -36,24 +36,18 @@ SkyCells::SkyCells(const ColorTable& table, const Directions& direction)
     firstRow_[static_cast<size_t>(i)] = static_cast<int>(int64_t{i} * height_ / kSide);
   }
   strips_.resize((rows + 1) * kSide);
-  std::array<Moments, size_t{kSide} * kSide> moments;
   ParallelFor(kSide, HardwareThreads(), [&](int column) {
     const auto at = static_cast<size_t>(column);
     double* strip = &strips_[at * (rows + 1)];
     for (int y = 0; y < height_; ++y)
       strip[y + 1] = strip[y] + table.ShareOfRow(y, firstColumn_[at], firstColumn_[at + 1]);
-    for (int row = 0; row < kSide; ++row)
-      moments[static_cast<size_t>(row * kSide + column)] = MomentsOfCell(table, column, row, direction);
-  });
-  for (int block = 0; block < kBlocks * kBlocks; ++block) {
-    const int column = block / kBlocks * kPerBlock, row = block % kBlocks * kPerBlock;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const int x = column + lane / kPerBlock, y = row + lane % kPerBlock;
-      const Moments& cell = moments[static_cast<size_t>(y * kSide + x)];
-      share_[static_cast<size_t>(y * kSide + x)] = cell.weight;
-      Set(cells_[static_cast<size_t>(block)], lane, cell, OutlineOf(direction, x, y));
+    for (int row = 0; row < kSide; ++row) {
+      const Outline outline = OutlineOf(direction, column, row);
+      const Moments cell = MomentsOfCell(table, column, row, direction, outline);
+      share_[static_cast<size_t>(row * kSide + column)] = cell.weight;
+      Set(cells_[static_cast<size_t>(BlockOf(column, row))], LaneOf(column, row), cell, outline);
     }
-  }
+  });
   ParallelFor(normal_cells::kSide, HardwareThreads(), [&](int row) {
     const auto first = static_cast<uint32_t>(row * normal_cells::kSide);
     for (uint32_t normal = first; normal < first + normal_cells::kSide; ++normal) TabulateBlocks(normal);
@@ -95,8 +89,8 @@ SkyCells::Outline SkyCells::OutlineOf(const Directions& direction, int column, i
 
 // The mass is that of the table; directions are those of parts of the cell of at least a texel, or of points within one
 // where the cell has few.
-SkyCells::Moments SkyCells::MomentsOfCell(const ColorTable& table, int column, int row,
-                                          const Directions& direction) const {
+SkyCells::Moments SkyCells::MomentsOfCell(const ColorTable& table, int column, int row, const Directions& direction,
+                                          const Outline& outline) const {
   const auto atX = static_cast<size_t>(column), atY = static_cast<size_t>(row);
   const int x0 = firstColumn_[atX], y0 = firstRow_[atY], across = firstColumn_[atX + 1] - x0,
             down = firstRow_[atY + 1] - y0;
@@ -126,7 +120,6 @@ SkyCells::Moments SkyCells::MomentsOfCell(const ColorTable& table, int column, i
   const double mass = strip[y0 + down] - strip[y0];
   if (cell.weight > 0) cell.sum *= mass / cell.weight;
   cell.weight = mass;
-  const Outline outline = OutlineOf(direction, column, row);
   for (int k = 0; k < kParts * kParts; ++k) {
     const Vector3* corner = &outline[static_cast<size_t>(k / kParts * (kParts + 1) + k % kParts)];
     const Vector3d one(corner[kParts + 2] - corner[0]), other(corner[kParts + 1] - corner[1]);
@@ -261,15 +254,14 @@ float SkyCells::Gain(const SkyReceiver& receiver, int x, int y) const {
   // The part with floor(i · size / kSide) <= x.
   const auto partOf = [](int at, int size) { return (kSide * (at + 1) - 1) / size; };
   const int column = partOf(x, width_), row = partOf(y, height_);
-  const int block = column / kPerBlock * kBlocks + row / kPerBlock;
+  const int block = BlockOf(column, row);
   Weights weights;
   const float cosine = WeighBlocks(receiver, weights);
   if (!(weights.of[block] > 0)) return 0;
   const double ofBlock = weights.ProbabilityOf(block);
   WeighCells(cells_[static_cast<size_t>(block)], receiver, cosine, weights);
   if (!(weights.sum > 0)) return 0;
-  const int lane = column % kPerBlock * kPerBlock + row % kPerBlock;
-  return GainOf(ofBlock * weights.ProbabilityOf(lane), column, row);
+  return GainOf(ofBlock * weights.ProbabilityOf(LaneOf(column, row)), column, row);
 }
 
 float SkyCells::MeanCosineOf(const SkyReceiver& receiver) const {

@@ -79,7 +79,6 @@ class SkyCells {
     double leastVariance = 0;
     Vector3d sum{0.0};  // of directions, weighted
     void Add(double w, const Vector3d& direction) { weight += w, sum += w * direction; }
-    void Add(const Moments& other) { weight += other.weight, solidAngle += other.solidAngle, sum += other.sum; }
   };
   struct Pick {
     int row = 0, column = 0;
@@ -88,9 +87,12 @@ class SkyCells {
   // Directions at the corners of 8 × 8 parts of a cell, row by row.
   using Outline = std::vector<Vector3>;
 
+  static int BlockOf(int column, int row) { return column / kPerBlock * kBlocks + row / kPerBlock; }
+  static int LaneOf(int column, int row) { return column % kPerBlock * kPerBlock + row % kPerBlock; }
   Outline OutlineOf(const Directions& direction, int column, int row) const;
   void TabulateBlocks(uint32_t cell);
-  Moments MomentsOfCell(const ColorTable& table, int column, int row, const Directions& direction) const;
+  Moments MomentsOfCell(const ColorTable& table, int column, int row, const Directions& direction,
+                        const Outline& outline) const;
   static void Set(Block& block, int lane, const Moments& moments, const Outline& outline);
   static float Light(const Block& block, const SkyReceiver& receiver, float slack, float (&cosines)[kLanes]);
   float WeighBlocks(const SkyReceiver& receiver, Weights& weights) const;
