@@ -229,9 +229,12 @@ Color BeamStep::DensityAt(float t) const {
 }
 
 Color ChannelsOf(const Color& throughput) {
-  const float sum = throughput.r + throughput.g + throughput.b;
-  const bool isUsable = throughput.IsValid() && sum > 0 && sum < kInfinity;
-  return isUsable ? throughput / sum : Color(1.0f / 3);
+  if (!throughput.IsValid()) return Color(1.0f / 3);
+  // x^(3/4)
+  const auto power = [](float x) { return std::sqrt(x) * std::sqrt(std::sqrt(x)); };
+  const Color powers(power(throughput.r), power(throughput.g), power(throughput.b));
+  const float sum = powers.r + powers.g + powers.b;
+  return sum > 0 ? powers / sum : Color(1.0f / 3);
 }
 
 namespace {
