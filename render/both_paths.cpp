@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "render/light_edges.h"
 #include "render/settings/integrator_choice.h"
 #include "render/strategy_recorder.h"
 
@@ -306,6 +307,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
   std::optional<AdaptivePixels> adaptive;
   if (pass_.allocation && (withCamera || seed == pass_.Seed())) adaptive.emplace(pass_, index, !withCamera);
   SlotSampler slots(*this, seed, index, adaptive ? &*adaptive : nullptr);
+  EdgeSampler edges(pass_, wanted_.has_value());
   for (uint64_t i = begin; i < end; ++i) {
     const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(tracesAnew_ && withCamera);
     if (!keepsPhotons && !withCamera) break;
@@ -328,14 +330,14 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     if (!withCamera || !slots.isInCrop) {
       if (lightPaths > 0) SampleLanes(pass_.integrator, nullptr, context);
     } else {
-      const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
+      PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       context.film = ray.film;
       if (pass_.learning || pass_.selection)
         pass_.Record(x, y, pass_.allocation ? slots.number : index, pass_.learning ? &records_[chunk] : nullptr,
                      pass_.selection ? &tested_[chunk] : nullptr, context);
       context.mergeBias = adder.StartBias();
       adder.StartLayers();
-      const Color radiance = TestedRadiance(pass_.integrator, ray, context);
+      const Color radiance = edges.Radiance(x, y, slots.number, context, ray);
       if (adaptive) {
         adaptive->Add(ray, radiance, adder);
       } else {

@@ -104,6 +104,7 @@ struct Pass {
   const SampleAllocation* allocation;  // null: one sample for each pixel
   PathLearning* learning;              // null: camera paths are not recorded
   SelectionTest* selection;            // null: selection of lights learns nothing
+  const LightEdges* edges;             // null: all samples have one camera ray
 
   // FirstLane of a sample of a pixel.
   int FirstLaneOf(int x, int y, uint64_t sample) const {

@@ -27,6 +27,7 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
     film.MakeAdaptive(wantedPhotons_.has_value());
   if (wantedPhotons_) film.KeepBias();
   MakePhotonStore();
+  edges_ = LightEdges::Find(scene, integrator, settings, film.Crop(), threads);
   if (settings.GuidesPaths() && integrator.FollowsCameraPaths())
     paths_ = std::make_unique<PathLearning>(settings.width, settings.height, film.Pixels(),
                                             integrator.Paths() == TracedPaths::Both, settings.AlwaysGuidesPaths());
@@ -72,7 +73,7 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
   PathLearning* recorded = RecordsPathsAfter(done) ? paths_.get() : nullptr;
   const RenderCounts counts =
       RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_, *film_, photons_.get(),
-                 allocation_.get(), recorded, learnsLights ? selection_.get() : nullptr);
+                 allocation_.get(), recorded, learnsLights ? selection_.get() : nullptr, edges_.get());
   CheckStop();  // the counts of a given-up pass are not added
   if (film_->IsAdaptive()) film_->CountPasses(count);
   counts_ += counts;

@@ -10,6 +10,7 @@
 #include "integrators/photon/photon_store.h"
 #include "integrators/walk/integrator.h"
 #include "render/adaptive_sampling.h"
+#include "render/light_edges.h"
 #include "render/render_backup.h"
 #include "render/settings/render_settings.h"
 
@@ -84,6 +85,7 @@ class PassSequence {
   std::unique_ptr<EmissionLearning> guiding_;     // null: no emission guiding
   std::unique_ptr<PathLearning> paths_;           // null: no path guiding
   std::unique_ptr<PhotonStore> photons_;          // of integrators that gather them
+  std::unique_ptr<const LightEdges> edges_;       // null: all samples have one camera ray
   std::unique_ptr<SampleAllocation> allocation_;  // of the last stage, in an adaptive film
 };
 

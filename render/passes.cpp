@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "render/both_paths.h"
+#include "render/light_edges.h"
 #include "render/pass.h"
 
 namespace lampyr {
@@ -15,8 +16,8 @@ constexpr int kTileSize = 16;
 constexpr int kLightPaths = -1;  // in the place of the pixel row, for samples that belong to no pixel
 
 // Adds the samples of the passes to the pixel of index `pixel` in the crop.
-void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampler& samplers, SampleAdder& adder,
-                     PathRecords* records, TestedSamples* tested, RenderCounts& counts) {
+void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampler& samplers, EdgeSampler& edges,
+                     SampleAdder& adder, PathRecords* records, TestedSamples* tested, RenderCounts& counts) {
   PixelSums sums = pass.film.Pixel(x, y);
   uint32_t count = 0;
   for (uint32_t i = pass.first; i < pass.end; ++i) count += pass.allocation->Count(pixel, i - pass.Offset());
@@ -24,12 +25,13 @@ void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampl
     const uint64_t number = sums.count;
     Sampler& sampler = samplers.Start(x, y, number);
     const float time = SampleTime(pass.scene, sampler);
-    const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
+    PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
     SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
     context.outputs = pass.Outputs();
     context.lane = pass.FirstLaneOf(x, y, number);
     pass.Record(x, y, number, records, tested, context);
-    adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, TestedRadiance(pass.integrator, ray, context), sums);
+    const Color radiance = edges.Radiance(x, y, number, context, ray);
+    adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, radiance, sums);
   }
   pass.film.Pixel(x, y) = sums;
 }
@@ -48,6 +50,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
     RenderCounts counts;
     SampleAdder adder(pass.settings, pass.film, counts);
     AdaptiveSampler samplers(pass);
+    EdgeSampler edges(pass, false);
     PathRecords* records = pass.learning ? &tileRecords[tile] : nullptr;
     TestedSamples* tested = pass.selection ? &tileTested[tile] : nullptr;
     for (int y = y0; y < y1; ++y) {
@@ -55,19 +58,20 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
         if (pass.allocation) {
           const auto pixel =
               static_cast<size_t>(y - crop.y0) * static_cast<size_t>(crop.Width()) + static_cast<size_t>(x - crop.x0);
-          TraceAdaptively(pass, x, y, pixel, samplers, adder, records, tested, counts);
+          TraceAdaptively(pass, x, y, pixel, samplers, edges, adder, records, tested, counts);
           continue;
         }
         PixelSums sums = pass.film.Pixel(x, y);
         for (uint32_t i = pass.first; i < pass.end; ++i) {
           sampler.StartPixelSample(x, y, i);
           const float time = SampleTime(pass.scene, sampler);
-          const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
+          PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
           SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
           context.outputs = pass.Outputs();
           context.lane = pass.FirstLaneOf(x, y, i);
           pass.Record(x, y, i, records, tested, context);
-          adder.Add(x, y, IsInHalf(i), ray, TestedRadiance(pass.integrator, ray, context), sums);
+          const Color radiance = edges.Radiance(x, y, i, context, ray);
+          adder.Add(x, y, IsInHalf(i), ray, radiance, sums);
         }
         pass.film.Pixel(x, y) = sums;
       }
@@ -138,10 +142,10 @@ LanesInBands InBands(const Wavelengths& wavelengths, const SpectralBands& bands)
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
                         PhotonStore* kept, const SampleAllocation* allocation, PathLearning* learning,
-                        SelectionTest* selection) {
+                        SelectionTest* selection, const LightEdges* edges) {
   if (!scene.isSpectral) {
-    const Pass pass{scene,   integrator, settings,   filter,   first,    first + count,
-                    threads, film,       allocation, learning, selection};
+    const Pass pass{scene,   integrator, settings,   filter,   first,     first + count,
+                    threads, film,       allocation, learning, selection, edges};
     return TracePass(pass, kept);
   }
   RenderCounts counts;
@@ -153,8 +157,8 @@ RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, 
     if (film.HasBands()) film.SetLanes(InBands(*wavelengths, *settings.bands));
     const RenderScene there = scene.AtWavelengths(wavelengths, integrator.MaterialsAfterWide());
     tuned.sensor = settings.sensor.Of(wavelengths->ToRgb());
-    const Pass pass{there,   integrator, tuned,      filter,   sample,   sample + 1,
-                    threads, film,       allocation, learning, selection};
+    const Pass pass{there,   integrator, tuned,      filter,   sample,    sample + 1,
+                    threads, film,       allocation, learning, selection, edges};
     counts += TracePass(pass, kept);
     film.CountWhite(wavelengths->White());
   }

@@ -14,6 +14,8 @@
 
 namespace lampyr {
 
+class LightEdges;  // light_edges.h
+
 // Adds samples [first, first + count) of every pixel of the crop to the film.
 //
 // Integrators of camera paths: all samples of one pixel after the other.
@@ -32,6 +34,7 @@ namespace lampyr {
 // photons come from light paths of that pass.
 //
 // `learning`: receives records of the camera paths; may be null. `selection`: receives tested samples; may be null.
+// `edges`: pixels whose samples have several camera rays; may be null.
 //
 // `allocation`: of the stage of an adaptive film that all of these passes are in; null: one sample for each pixel. The
 // samples of a pixel are numbered through the stage. Rates are relative to what the crop sees: a crop of an adaptive
@@ -39,6 +42,7 @@ namespace lampyr {
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
                         PhotonStore* kept = nullptr, const SampleAllocation* allocation = nullptr,
-                        PathLearning* learning = nullptr, SelectionTest* selection = nullptr);
+                        PathLearning* learning = nullptr, SelectionTest* selection = nullptr,
+                        const LightEdges* edges = nullptr);
 
 }  // namespace lampyr

@@ -175,6 +175,7 @@ class CameraSide final : public PathVisitor {
       sample_.radiance +=
           path.Count() == 0 ? SeeLightAt(sample_, state, hit, point) : HitLightAt(sample_, state, point);
     }
+    if (sample_.context.isForSeenLight) return false;
     // Beyond the first wide scattering the radius is known before the vertex is made.
     if (state.hasScatteredWidely && sample_.merging && sample_.isMerged)
       sample_.context.gather->map->PrefetchCells(point.position, sample_.mergeRadius);
@@ -184,6 +185,7 @@ class CameraSide final : public PathVisitor {
   // Photons in media along the ray. Each gets a vertex of the camera subpath of its own, the same as after a collision
   // there except for the density.
   void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
+    if (sample_.context.isForSeenLight) return;
     if (!sample_.context.gather || !sample_.isMerged || sample_.context.IsCounted(state.isDispersed)) return;
     if (static_cast<int>(path.Count()) >= sample_.settings.maxDepth) return;
     const PhotonMap& map = *sample_.context.gather->map;
@@ -192,11 +194,14 @@ class CameraSide final : public PathVisitor {
   }
 
   void Glowed(const Subpath& path, const PathState& state, const Color& radiance) override {
-    const Color seen = state.Throughput() * radiance;
+    Color seen = state.Throughput() * radiance;
+    if (path.Count() == 0) seen *= sample_.context.seenShare;
     if (sample_.context.layers)
       AddFoundToLayers(sample_.context, path, state.event, sample_.context.outputs->OfMedia(), seen);
     sample_.radiance += seen;
   }
+
+  bool Collided(const Subpath&, const PathState&) override { return !sample_.context.isForSeenLight; }
 
   bool Arrived(Subpath& path, const PathState& state) override {
     PathVertex& vertex = path.Last();

@@ -61,7 +61,8 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
   const LightingServices& lighting = sample.Lighting();
   const Ray& ray = state.ray;
   ConnectedPath path;
-  path.value = state.specular * lighting.EmissionForCamera(ray.direction, hit.t, point, context.time);
+  path.value =
+      state.specular * context.seenShare * lighting.EmissionForCamera(ray.direction, hit.t, point, context.time);
   if (path.value.IsBlack()) return path.value;
   path.s = 0;
   path.t = 2;
@@ -93,7 +94,7 @@ Color SeeBackground(const BidirectionalSample& sample, const PathState& state) {
   path.end.canBeHit = true;
   path.atLens = AreaDensity(1);
   path.sums.Of(TechniqueGroup::Hit).Add(1);
-  path.value = EscapedEmissionForCamera(sample.context, state.ray, state.specular);
+  path.value = EscapedEmissionForCamera(sample.context, state.ray, state.specular * sample.context.seenShare);
   sample.Report(path);
   return path.WeightedValue();
 }

@@ -18,11 +18,12 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
         lighting_(*context.scene.lighting),
         settings_(settings),
         nextEvent_{settings.dimensions, false, settings.shadowRays},
-        gatherer_(gatherer) {}
+        gatherer_(gatherer),
+        emissionOnly_(context.isForSeenLight) {}
 
   void Escaped(const Subpath& path, const PathState& state) override {
     if (path.Count() == 0) {
-      radiance_ += EscapedEmissionForCamera(context_, state.ray, state.specular);
+      radiance_ += EscapedEmissionForCamera(context_, state.ray, state.specular * context_.seenShare);
       return;
     }
     for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
@@ -34,7 +35,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   bool Met(const Subpath& path, const PathState& state, const RayHit& hit, const SurfacePoint& point,
            bool isLight) override {
     if (isLight && path.Count() == 0) {
-      const Color seen = state.specular * lighting_.EmissionForCamera(state.ray.direction, hit.t, point, context_.time);
+      const Color seen = state.specular * context_.seenShare *
+                         lighting_.EmissionForCamera(state.ray.direction, hit.t, point, context_.time);
       if (context_.layers)
         AddFoundToLayers(context_, path, state.event, context_.outputs->OfLight(lighting_.LightAt(point)), seen);
       radiance_ += seen;
@@ -64,7 +66,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   }
 
   void Glowed(const Subpath& path, const PathState& state, const Color& radiance) override {
-    const Color seen = state.Throughput() * radiance;
+    Color seen = state.Throughput() * radiance;
+    if (path.Count() == 0) seen *= context_.seenShare;
     if (context_.layers) AddFoundToLayers(context_, path, state.event, context_.outputs->OfMedia(), seen);
     radiance_ += seen;
   }
@@ -248,10 +251,10 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const CameraPathSettings& settings_;
   const NextEventSettings nextEvent_;
   PhotonGatherer* gatherer_;
-  bool emissionOnly_ = false;  // the ray is traced for emission alone: other light from there is gathered
-  LitSegment segment_;         // segment of the last ray
-  double arrivesAfter_ = 0;    // distance at which the walk ends on that ray
-  Arrival arrival_;            // at the last vertex
+  bool emissionOnly_;        // the ray is traced for emission alone: other light from there is gathered
+  LitSegment segment_;       // segment of the last ray
+  double arrivesAfter_ = 0;  // distance at which the walk ends on that ray
+  Arrival arrival_;          // at the last vertex
   // Set while a vertex with a distance sampled for a light is connected:
   const Subpath* path_ = nullptr;  // lights are sampled at its last vertex
   const LitSegment::Sample* sampledFor_ = nullptr;

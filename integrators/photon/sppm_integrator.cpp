@@ -217,6 +217,7 @@ Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const
     PhotonRecorder recorder(context, settings_);
     TraceLightPath(context, settings_.maxDepth, kLightDimensions, path, recorder, glowing_.get());
   }
+  if (ray && context.isForSeenLight) return TraceCameraPath(context, path_, *ray, nullptr);
   if (!ray || !context.gather) return Color(0.0f);
   thread_local PhotonLookup lookup;
   RadianceEstimate estimate(settings_, context, *ray, lookup);

@@ -138,6 +138,10 @@ struct SampleContext {
   // arrived is recorded for learned selection. Null: not wanted.
   TestedSamples* tested = nullptr;
   MediumTimes* mediumTimes = nullptr;  // null: not wanted
+  // Factor on the light that the ray meets before anything scatters it: 1 / n if the sample has n rays that look for it.
+  float seenShare = 1;
+  // Nothing but that light is wanted: the path ends where the ray does. There is no light path.
+  bool isForSeenLight = false;
 
   SampleContext With(Sampler& other) const {
     SampleContext with{scene,    other,       time,      counts,        layers,     splats,

@@ -94,9 +94,14 @@ inline const Setting kShadowThreshold{
     .range = "0 or more",
     .isBiased = true};
 
+inline const Setting kLightEdges{.name = "light-edges",
+                                 .help = "More camera rays where the camera sees the edges of bright lights",
+                                 .fallback = true};
+
 // Settings of integrators with next-event estimation.
-inline const std::vector<const Setting*> kOfNextEvent = {
-    &kMaxDepth, &kLightSampler, &kLightSamples, &kLearnLights, &kLearnAlways, &kShadowRoulette, &kShadowThreshold};
+inline const std::vector<const Setting*> kOfNextEvent = {&kMaxDepth,        &kLightSampler, &kLightSamples,
+                                                         &kLearnLights,     &kLearnAlways,  &kShadowRoulette,
+                                                         &kShadowThreshold, &kLightEdges};
 // Settings of integrators whose camera paths go on after they have been scattered widely.
 inline const std::vector<const Setting*> kOfGuiding = {&kGuidePaths, &kGuideAlways};
 

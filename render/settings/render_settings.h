@@ -77,6 +77,7 @@ struct RenderSettings {
     const auto set = static_cast<int>(values.Integer("light-samples"));
     return set > 0 ? set : counts ? counts->lightSamples : 1;
   }
+  bool SamplesLightEdges() const { return values.IsOn("light-edges"); }
   bool GuidesPaths() const { return values.IsOn("guide-paths"); }
   bool AlwaysGuidesPaths() const { return values.IsOn("guide-always"); }
   LightSelection LightSampler() const { return *ParseLightSelection(values.Word("light-sampler")); }
