@@ -338,10 +338,11 @@ TEST(MatrixIsWhole, EveryModeIsAColumn) {
   }
   // Settings of integrators: those that are no mode change no more than the noise or the blur, or are said to be
   // biased.
-  const std::vector<std::string> modes = {"merge",       "connect",      "direct-photons", "guide-photons",
-                                          "guide-paths", "guide-always", "learn-lights",   "learn-always",  "light-samples"},
-                                 others = {"max-depth", "light-sampler", "photons",        "photon-memory",
-                                           "radius",    "alpha",         "shadow-roulette"};
+  const std::vector<std::string> modes = {"merge",         "connect",      "direct-photons",
+                                          "guide-photons", "guide-paths",  "guide-always",
+                                          "learn-lights",  "learn-always", "light-samples"},
+                                 others = {"max-depth", "light-sampler", "photons",         "photon-memory",
+                                           "radius",    "alpha",         "shadow-roulette", "light-edges"};
   const Settings settings = IntegratorSettings();
   for (const std::string& name : settings.Names()) {
     if (settings.Find(name)->isBiased) continue;
