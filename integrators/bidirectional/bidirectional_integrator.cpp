@@ -199,6 +199,8 @@ class CameraSide final : public PathVisitor {
     if (sample_.context.layers)
       AddFoundToLayers(sample_.context, path, state.event, sample_.context.outputs->OfMedia(), seen);
     sample_.radiance += seen;
+    if (sample_.context.observer && sample_.context.observer->WantsSums()) [[unlikely]]
+      ReportGlow(path, seen);
   }
 
   bool Collided(const Subpath&, const PathState&) override { return !sample_.context.isForSeenLight; }
@@ -234,6 +236,15 @@ class CameraSide final : public PathVisitor {
   float Found() const override { return sample_.radiance.Average(); }
 
  private:
+  // For the pilot: no technique but that of camera paths finds light that media emit along them.
+  void ReportGlow(const Subpath& camera, const Color& seen) {
+    ConnectedPath path;
+    path.s = 0;
+    path.t = static_cast<int>(camera.Count()) + 2;
+    path.value = seen;
+    path.sums.Of(TechniqueGroup::Hit).Add(1);
+    sample_.context.observer->Observe(path);
+  }
   // Cost of merging with a beam, in merges with photons on surfaces.
   static constexpr uint64_t kPhotonsPerBeam = 4;
 

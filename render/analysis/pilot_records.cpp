@@ -142,8 +142,10 @@ Recorder::Factors Recorder::FactorsOf(const TechniqueSums& sums, double splatSqu
                            merge * merge * merge * groups.merge.cubes;
       const double factor = cubes / (squares * squares) * splatSquare;
       const bool isFound = squares > 0 && factor <= std::numeric_limits<double>::max();
+      const double ofLight = light * light * light * groups.light.cubes + merge * merge * merge * groups.merge.cubes;
       all.squares[k] = isFound ? squares : 0;
       all.factors[k] = isFound ? factor : 0;
+      all.ofLight[k] = isFound && cubes > 0 ? ofLight / cubes : 0;
     }
   };
   set(ofWhole, 0, kWholeCandidates);
@@ -172,14 +174,16 @@ void Recorder::KeepRare(const ConnectedPath& path, double value, size_t pixel, c
 }
 
 void Recorder::AddSplat(const ConnectedPath& path, double value, size_t pixel) {
-  Splat splat{pixel, path.s + path.t == 2, path.weight * value, {}};
+  Splat splat{pixel, path.s + path.t == 2, path.weight * value, {}, {}};
   if (Known(path.sums) > 0) {
-    const auto [squares, factors] = FactorsOf(path.sums, 1 / splatCount_);
+    const auto [squares, factors, ofLight] = FactorsOf(path.sums, 1 / splatCount_);
     for (size_t k = 0; k < kCandidates; ++k)
       splat.squares[k] = squares[k] > 0 ? splat.weighted * value * factors[k] : -1;
+    splat.ofLight = ofLight;
     KeepRare(path, value, pixel, factors);
   } else {
     splat.squares.fill(splat.weighted * value / splatCount_);
+    splat.ofLight.fill(1);
   }
   if (pixel >= first_ && pixel < end_) {
     Add(splat);
@@ -194,6 +198,7 @@ void Recorder::Add(const Splat& splat) {
   for (size_t k = 0; k < kCandidates; ++k) {
     const bool isMissed = splat.squares[k] < 0;
     here.square[k] += isMissed ? 0 : splat.squares[k];
+    here.ofLight[k] += isMissed ? 0 : splat.squares[k] * splat.ofLight[k];
     here.missing[k] += isMissed ? splat.weighted : 0;
   }
 }
@@ -203,9 +208,10 @@ void Recorder::Add(const ConnectedPath& path, double value) {
   const double weighted = path.weight * value, known = Known(path.sums);
   (path.s + path.t == 2 ? here.seen : here.mean) += weighted;
   if (!(known > 0)) return AddAlike(path, value);
-  const auto [squares, factors] = FactorsOf(path.sums, 1);
+  const auto [squares, factors, ofLight] = FactorsOf(path.sums, 1);
   for (size_t k = 0; k < kCandidates; ++k) {
     here.square[k] += weighted * value * factors[k];
+    here.ofLight[k] += weighted * value * factors[k] * ofLight[k];
     here.missing[k] += squares[k] > 0 ? 0 : weighted;
   }
   for (size_t k = 1; k < kCandidates; ++k)
@@ -320,8 +326,11 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   least_ = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
   // More light paths, or more merges, leave the points in the pixels as they are, and what these gain.
   std::array<double, kCandidates> gains;
-  for (size_t k = 0; k < candidates.size(); ++k)
-    gains[k] = isSobol ? GainOfSobol(candidates[WithFewestSamples(k)].error) : 1.0;
+  for (size_t k = 0; k < candidates.size(); ++k) {
+    const double ofLight = PartOfLight(k, brightness);
+    const double ofCamera = GainOfSobol(candidates[WithFewestSamples(k)].error);
+    gains[k] = isSobol ? 1 / ((1 - ofLight) / ofCamera + ofLight / std::min(kGainOfSobolForLight, ofCamera)) : 1.0;
+  }
   for (size_t k = 0; k < candidates.size(); ++k) {
     PilotCandidate& candidate = candidates[k];
     for (double& error : candidate.tileErrors) error /= gains[k];
@@ -375,6 +384,15 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
     variances += variance;
   }
   candidate.uncertainty = std::sqrt(variances);
+}
+
+double Records::PartOfLight(size_t k, const Brightness& brightness) const {
+  double all = 0, ofLight = 0;
+  for (size_t i = 0; i < pixels_.moments.size(); ++i) {
+    all += brightness.scales[i] * pixels_.moments[i].square[k];
+    ofLight += brightness.scales[i] * pixels_.moments[i].ofLight[k];
+  }
+  return all > 0 ? std::clamp(ofLight / all, 0.0, 1.0) : 0.0;
 }
 
 std::vector<char> Records::Hopeless(const std::vector<Moments>& pixels, const std::vector<double>& scales) const {

@@ -18,9 +18,6 @@ constexpr int kFewestPairs = 4;  // of passes
 // No more than two pairs where its error in equal time is larger than that of the best by the first factor, and a
 // single one where it is by the second.
 constexpr double kHopeless = 2, kQuiteHopeless = 6;
-// Error of independent samples over that of Sobol points, which serve photons less than camera paths: 1.0 to 1.55 in
-// nine scenes of scenes/ and of another renderer, 64×64 with 32 samples per pixel.
-constexpr double kGainOfSobol = 1.2;
 // Blur takes some light from edges, so that less than this is not told from it.
 constexpr double kTolerated = 0.03;
 
@@ -156,7 +153,7 @@ std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const Rend
                                             const RenderSettings& settings, const Grid& grid, const Records& records,
                                             const PilotCandidate* best, int passCount, int threads) {
   if (!IntegratorRefusal(scene, kName).empty() || !IntegratorHints(scene, kName).empty()) return std::nullopt;
-  const double gain = settings.sampler == SamplerKind::Sobol ? kGainOfSobol : 1.0;
+  const double gain = settings.sampler == SamplerKind::Sobol ? kGainOfSobolForLight : 1.0;
   const auto pairs = static_cast<uint32_t>(std::max(passCount / 4, kFewestPairs));
   Measured measured(records);
   const Counts counts = Trace(scene, counted, settings, grid, best, gain, pairs, threads, measured);

@@ -132,7 +132,16 @@ SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t ligh
                            : light < description_.lights.size() ? description_.lights[light].mediumName
                                                                 : "";
   const int32_t otherwise = name.empty() ? exterior : IndexOf(name, where);
-  if (!scene.geometry->HasBoundaries()) return {otherwise, otherwise};
+  if (!scene.geometry->HasBoundaries()) {  // all of the scene is in one medium
+    if (otherwise != exterior && !hasWarnedOfDispute_) {
+      hasWarnedOfDispute_ = true;
+      diagnostics_.Warn(where, "the light is said to be in " + NameOf(otherwise) + " and the camera in " +
+                                   NameOf(exterior) +
+                                   ", but no surface separates the two: all of the scene is taken to be in " +
+                                   NameOf(exterior) + ". A MediumInterface before the Camera says what it is in");
+    }
+    return {exterior, exterior};
+  }
   std::optional<int32_t> medium;
   bool startsVary = false;
   for (int i = 0; i < points && !startsVary; ++i) {

@@ -45,6 +45,8 @@ class SceneMedia {
   // - Area lights have the media of their shape's sides, if it separates any. If they reach from one medium into
   //   another, each ray starts in the one that it goes through.
   // - Lights at infinity are in the medium that all rays from the camera end in, or else in vacuum.
+  // - Where no surface separates media, all of the scene is in that of the camera, and lights that the file puts into
+  //   another one get a warning.
   // - Where rays disagree, what most of them say holds, and one warning is given with the place of the surface.
   void Locate(const Point2& middle, const std::vector<FileLocation>& lightPlaces, RenderScene& scene);
   // Finds the medium around the camera; before Locate. `eye`: the start of the ray through the middle of the film.
