@@ -19,6 +19,9 @@
 
 namespace lampyr {
 
+// Passes of sppm after which its blur is compared with the noise of others, which has become smaller by then.
+inline constexpr double kBlurredPasses = 256;
+
 struct PilotCandidate {
   std::string integrator;
   TechniqueCounts counts;  // of bdpt and vcm
@@ -28,6 +31,9 @@ struct PilotCandidate {
   double uncertainty = 0;  // standard error of `error`
   double cost = 0;         // of a sample, nanoseconds of a typical machine
   double missing = 0;      // part of the light that it cannot find
+  // Of sppm, after kBlurredPasses: the factor on `error` since the passes of which the pilot has the radius, because it
+  // shrinks; and the squared bias, times the passes.
+  double noiseGrowth = 1, biasError = 0;
   double gainOfSobol = 1;  // by which well-distributed samples lower the error; `error` is that of those
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
   // techniques.
@@ -42,17 +48,12 @@ struct PilotCandidate {
 
   // Error of a picture that takes a second per pixel.
   double ErrorTimesCost() const { return error * cost * 1e-9; }
-  // The same, if the error is larger than estimated by twice its standard error, and where photons are merged by their
-  // blur, which the pilot does not know. So of equals the unbiased one is chosen. In sppm the noise of a sample also
-  // grows as the radius shrinks, by 1.6 from the 64 passes of which the pilot has the radius to 256; with the blur the
-  // squared error of 350 passes was 2.2 times that of the pilot in a Cornell box, and 4.5 times in scenes/rainbow.
+  // The same, if the error is larger than estimated by twice its standard error, and where photons are merged with
+  // their blur. So of equals the unbiased one is chosen.
   double MostErrorTimesCost() const {
-    constexpr double kBlur = 1.1, kWideBlur = 1.2, kBlurOfSppm = 2.5;
-    const double blur = counts.startsWide      ? kWideBlur
-                        : integrator == "vcm"  ? kBlur
-                        : integrator == "sppm" ? kBlurOfSppm
-                                               : 1.0;
-    return (error + 2 * uncertainty) * blur * cost * 1e-9;
+    constexpr double kBlur = 1.1, kWideBlur = 1.2;
+    const double blur = counts.startsWide ? kWideBlur : integrator == "vcm" ? kBlur : 1.0;
+    return ((error + 2 * uncertainty) * noiseGrowth * blur + biasError) * cost * 1e-9;
   }
 };
 

@@ -15,8 +15,6 @@ namespace {
 // Numbers of the samples of a pixel: those of camera paths, then those of photons, then those that select pixels.
 constexpr uint32_t kSamplesOfPart = 1 << 16;
 constexpr uint64_t kMostLightPaths = 4 * kMostPilotPixels;
-// The radius is that of the average pass of so many.
-constexpr double kTypicalPasses = 64;
 
 }  // namespace
 
@@ -88,6 +86,8 @@ PassCounts PilotPasses::Trace(const Integrator& integrator, uint32_t pass, const
     }
     LightSpread spread;
     if (noted.spreads) context.lightSpread = &spread;
+    Color bias;
+    if (noted.biases) context.mergeBias = &bias;
     const bool isVignetted = ray.weight == 0;
     const Ray* start = isVignetted ? nullptr : &ray.ray;
     Color value;
@@ -97,6 +97,7 @@ PassCounts PilotPasses::Trace(const Integrator& integrator, uint32_t pass, const
     if (recorder) recorder->EndSample();
     const auto weight = static_cast<double>(ray.weight);
     if (noted.values) (*noted.values)[grid_.PixelOf(x, y)] = weight * static_cast<double>(value.Average());
+    if (noted.biases) (*noted.biases)[grid_.PixelOf(x, y)] = weight * static_cast<double>(bias.Average());
     if (!noted.spreads) return;
     LightSpread& sum = (*noted.spreads)[grid_.PixelOf(x, y)];
     sum.squares += weight * weight * spread.squares;

@@ -22,6 +22,7 @@ struct Noted {
   // Difference between the lights that next-event estimation chooses, by pixel, times the filter weight of the sample.
   std::vector<LightSpread>* spreads = nullptr;
   std::vector<double>* values = nullptr;  // by pixel: what the sample adds to it
+  std::vector<double>* biases = nullptr;  // the same of SampleContext::mergeBias
 };
 
 class PilotPasses {
@@ -64,5 +65,7 @@ PhotonSettings PhotonsOfPilot(const Integrator& integrator, double fewer);
 // Radius of the pilot's merging, in radii of the first pass of a render. The pilot has fewer light paths by the factor
 // `fewer`; a lookup within the larger radius finds as many photons as in the render.
 double WiderRadius(double fewer, double alpha);
+// The radius is that of the average pass of so many.
+inline constexpr double kTypicalPasses = 64;
 
 }  // namespace lampyr::pilot
