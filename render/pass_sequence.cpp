@@ -27,7 +27,6 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
     film.MakeAdaptive(wantedPhotons_.has_value());
   if (wantedPhotons_) film.KeepBias();
   MakePhotonStore();
-  edges_ = LightEdges::Find(scene, integrator, settings, film.Crop(), threads);
   if (settings.GuidesPaths() && integrator.FollowsCameraPaths())
     paths_ = std::make_unique<PathLearning>(settings.width, settings.height, film.Pixels(),
                                             integrator.Paths() == TracedPaths::Both, settings.AlwaysGuidesPaths());
@@ -46,6 +45,9 @@ void PassSequence::MakePhotonStore() {
 }
 
 void PassSequence::Add(uint32_t done, uint32_t count) {
+  // Here and not before: it can be stopped, as passes can.
+  if (!hasSoughtEdges_) edges_ = LightEdges::Find(scene_, integrator_, settings_, film_->Crop(), threads_);
+  hasSoughtEdges_ = true;
   if (photons_) before_ = photons_->Statistics();
   const uint32_t end = done + count;
   while (done < end) {

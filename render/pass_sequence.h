@@ -79,13 +79,14 @@ class PassSequence {
   uint32_t firstSample_;
   std::optional<PhotonSettings> wantedPhotons_;
   RenderCounts counts_;
-  PhotonStatistics before_;                       // of the photons, before the last call of Add
-  std::unique_ptr<LightLearning> learning_;       // null: selection learns nothing
-  std::unique_ptr<SelectionTest> selection_;      // of what it learns; null with it
-  std::unique_ptr<EmissionLearning> guiding_;     // null: no emission guiding
-  std::unique_ptr<PathLearning> paths_;           // null: no path guiding
-  std::unique_ptr<PhotonStore> photons_;          // of integrators that gather them
-  std::unique_ptr<const LightEdges> edges_;       // null: all samples have one camera ray
+  PhotonStatistics before_;                    // of the photons, before the last call of Add
+  std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
+  std::unique_ptr<SelectionTest> selection_;   // of what it learns; null with it
+  std::unique_ptr<EmissionLearning> guiding_;  // null: no emission guiding
+  std::unique_ptr<PathLearning> paths_;        // null: no path guiding
+  std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
+  std::unique_ptr<const LightEdges> edges_;    // null: all samples have one camera ray
+  bool hasSoughtEdges_ = false;
   std::unique_ptr<SampleAllocation> allocation_;  // of the last stage, in an adaptive film
 };
 
