@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
 
 #include "base/parallel.h"
 #include "integrators/registry.h"
@@ -13,21 +12,24 @@ namespace lampyr {
 
 namespace {
 
-constexpr uint64_t kProbeSeed = 0x3c6ef372fe94f82b;
+constexpr uint64_t kProbeSeed = 0x1f83d9abfb41bd6b;
 // The first samples of a pixel look for seen light, those from here on are paths.
 constexpr uint32_t kFirstPath = 1 << 16;
 // Rays of a pixel near an edge besides the first, and its paths.
 constexpr int kMoreRays = 8, kPaths = 2;
-// An edge is where neighbours differ by so many times the mean of all light that is not seen directly.
+// An edge is where neighbours differ by so many times the mean of all light that is not seen directly, or of a part of
+// what is: before a bright sky, dark objects are not all edges.
 constexpr float kContrast = 3;
+constexpr double kPartOfSeen = 0.25;
 // Pixels next to those with an edge are looked at in so many rounds: a lamp of a pixel's width, or one far out of
 // focus, is missed by most first rays.
 constexpr int kRounds = 3;
+// So many splats around a pixel tell how much light arrives there.
+constexpr int kFewestSplats = 3;
 // A pixel is judged by the 3 × 3 around it; its outcome depends on pixels as far away as this.
 constexpr int kReach = kRounds + 3;
-// Noise of seen light at which a second ray is worth its time, relative to the brightness of the pixel: a ray takes a
-// sixth of the time of a sample of `path`, and samples of everything else have a variance of 0.1 to 1, of which Sobol
-// points leave a half.
+// Squared number of rays for a relative variance of 1 of what a ray sees: the time of a sample of `path` over that of a
+// ray, 6, over the relative variance of all other light, 0.1 to 1, of which Sobol points leave a half.
 constexpr double kWorth = 8;
 
 // What the camera sees through pixels.
@@ -67,6 +69,16 @@ class Probe {
   }
   // The light that a ray sees before anything scatters it.
   float Seen(int x, int y, uint32_t index, Sampler& sampler) const { return Sample(x, y, index, true, sampler); }
+  // The same of a ray that starts at a film point.
+  double SeenAt(const Point2& film, uint32_t index, Sampler& sampler) const {
+    sampler.StartPixelSample(0, -1, index);
+    PixelRay ray;
+    const float time = SampleTime(scene_, sampler);
+    sampler.SetDimension(dimensions::kLens);
+    ray.camera = scene_.camera->GenerateRay(film, sampler.Get2D(), time);
+    ray.film = film;
+    return static_cast<double>(Trace(ray, time, true, sampler));
+  }
   // All other light, by a path.
   float Unseen(int x, int y, uint32_t index, Sampler& sampler) const {
     return Sample(x, y, kFirstPath + index, false, sampler);
@@ -75,12 +87,15 @@ class Probe {
  private:
   float Sample(int x, int y, uint32_t index, bool isSeen, Sampler& sampler) const {
     sampler.StartPixelSample(x, y, index);
+    const float time = SampleTime(scene_, sampler);
+    return Trace(MakePixelRay(scene_, filter_, x, y, time, sampler), time, isSeen, sampler);
+  }
+  float Trace(const PixelRay& ray, float time, bool isSeen, Sampler& sampler) const {
+    if (ray.camera.weight == 0) return 0;
     RenderCounts counts;
-    SampleContext context{scene_, sampler, SampleTime(scene_, sampler), counts};
+    SampleContext context{scene_, sampler, time, counts};
     context.isForSeenLight = isSeen;
     context.seenShare = isSeen ? 1.0f : 0.0f;
-    const PixelRay ray = MakePixelRay(scene_, filter_, x, y, context.time, sampler);
-    if (ray.camera.weight == 0) return 0;
     context.tracesLight = false;
     context.film = ray.film;
     const Integrator& integrator = isSeen ? integrator_ : *path_;
@@ -94,7 +109,7 @@ class Probe {
   std::unique_ptr<Integrator> path_;
 };
 
-// The pixels that decide about those of the crop.
+// The crop, and the pixels around it that its numbers of rays depend on.
 class Window {
  public:
   Window(const RenderSettings& settings, const PixelRect& crop)
@@ -126,6 +141,12 @@ class Window {
   int x0_, y0_, width_, height_;
 };
 
+// The light of lamps at a pixel, by light paths.
+struct Arriving {
+  float light = 0;
+  uint32_t splats = 0;
+};
+
 // The light of a pixel near an edge.
 struct EdgePixel {
   double seen = 0, variance = 0;  // of a ray
@@ -151,14 +172,12 @@ class EdgeSearch {
         first_[i] = probe_.Seen(window_.X(i), window_.Y(i), 0, sampler);
     });
     AddArriving(settings);
-    for (const float seen : first_) AddTypical(static_cast<double>(seen), 0);
   }
 
   // Finds the pixels near edges. False: there are none.
   bool Run() {
     for (int round = 0; round < kRounds; ++round)
       if (!Measure()) break;
-    for (const EdgePixel& edge : measured_) AddTypical(edge.seen, edge.variance);
     return !measured_.empty();
   }
 
@@ -166,10 +185,11 @@ class EdgeSearch {
   int MoreRays(size_t pixel) const {
     if (indices_[pixel] == kNotMeasured) return 0;
     EdgePixel mean;
-    int count = 0, all = 0;
+    int count = 0, all = 0, splats = 0;
     double arriving = 0;
     window_.ForAround(pixel, [&](size_t other) {
-      arriving += static_cast<double>(arriving_[other]);
+      arriving += static_cast<double>(arriving_[other].light);
+      splats += static_cast<int>(arriving_[other].splats);
       ++all;
       if (indices_[other] == kNotMeasured) return;
       const EdgePixel& there = measured_[indices_[other]];
@@ -180,9 +200,11 @@ class EdgeSearch {
     });
     double seen = mean.seen / count, variance = mean.variance / count;
     const double unseen = mean.unseen / count;
-    if (2 * seen < arriving / all) {  // a lamp that fills too little of the pixels for the rays to meet it
+    // A lamp that fills too little of the pixels for the rays to meet it; of few splats the light is not known, as on a
+    // large dim lamp.
+    if (splats >= kFewestSplats && 2 * seen < arriving / all) {
       seen = arriving / all;
-      variance = seen * std::max(TypicalSeen() - seen, 0.0);
+      variance = seen * std::max(typicalSeen_ - seen, 0.0);
     }
     // A sample sees the light or something else, which is the darker on average the more it sees of the light: with n
     // rays the covariance, -seen · unseen, is divided by n as well, and less of the noise of the one is made up for by
@@ -201,7 +223,8 @@ class EdgeSearch {
   static constexpr uint32_t kNotMeasured = 0xffffffff;
 
   bool IsEdge(float least, float largest) const {
-    return static_cast<double>(largest - least) > static_cast<double>(kContrast) * meanUnseen_;
+    return static_cast<double>(largest - least) >
+           static_cast<double>(kContrast) * std::max(meanUnseen_, kPartOfSeen * meanSeen_);
   }
 
   // The mean of a sample over pixels that are evenly distributed over the whole picture.
@@ -226,23 +249,29 @@ class EdgeSearch {
     return indices_[pixel] == kNotMeasured ? first_[pixel] : static_cast<float>(measured_[indices_[pixel]].seen);
   }
 
-  // What a ray sees that sees a light: the mean of seen light, weighted by itself.
-  double TypicalSeen() const { return seenSum_ > 0 ? seenSquares_ / seenSum_ : 0.0; }
-  void AddTypical(double seen, double variance) {
-    seenSum_ += seen;
-    seenSquares_ += variance + seen * seen;
-  }
-
   // Looks for lamps by light paths: first rays miss those that fill a small part of a pixel, or are far out of focus.
   void AddArriving(const RenderSettings& settings) {
     constexpr uint64_t kMostLightPaths = 1 << 14;
     const uint64_t pixels = static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height);
-    const SplatList splats = probe_.ArrivingDirectly(std::min(pixels / 2 + 1, kMostLightPaths), settings);
+    const SplatList splats = probe_.ArrivingDirectly(std::min(pixels, kMostLightPaths), settings);
     for (const Splat& splat : splats.Splats()) {
       const int x = static_cast<int>(splat.film.x), y = static_cast<int>(splat.film.y);
-      if (window_.Has(x, y))
-        arriving_[window_.PixelOf(x, y)] += splat.value.Average() / static_cast<float>(splats.Paths());
+      if (!window_.Has(x, y)) continue;
+      Arriving& here = arriving_[window_.PixelOf(x, y)];
+      here.light += splat.value.Average() / static_cast<float>(splats.Paths());
+      ++here.splats;
     }
+    // By rays through some of the film points where light arrives, wherever they are.
+    constexpr size_t kTypicalRays = 256;
+    const size_t step = std::max<size_t>(splats.Splats().size() / kTypicalRays, 1);
+    Sampler sampler(SamplerKind::Sobol, kProbeSeed);
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < splats.Splats().size(); i += step) {
+      const double seen = probe_.SeenAt(splats.Splats()[i].film, static_cast<uint32_t>(i), sampler);
+      sum += seen;
+      squares += seen * seen;
+    }
+    if (sum > 0) typicalSeen_ = squares / sum;
   }
 
   // Measures the pixels next to edges that have not been measured. False: there are none.
@@ -256,11 +285,11 @@ class EdgeSearch {
         const float seen = SeenAt(other);
         least = std::min(least, seen);
         largest = std::max(largest, seen);
-        isLit = isLit || arriving_[other] > 0;
+        isLit = isLit || arriving_[other].splats > 0;
         isNextToEdge = isNextToEdge || (indices_[other] != kNotMeasured && measured_[indices_[other]].variance > 0);
       });
-      // Of a lamp that no ray has met, or not all.
-      const bool mayBeEdge = isLit && static_cast<double>(least) <= 0.5 * TypicalSeen();
+      // Light paths say that a lamp is there, and a first ray has missed it.
+      const bool mayBeEdge = isLit && static_cast<double>(least) <= 0.5 * typicalSeen_;
       if (isNextToEdge || mayBeEdge || IsEdge(least, largest)) found.push_back(i);
     }
     const size_t before = measured_.size();
@@ -297,10 +326,10 @@ class EdgeSearch {
   Window window_;
   int threads_;
   double meanUnseen_ = 0, meanSeen_ = 0;
-  double seenSum_ = 0, seenSquares_ = 0;  // of rays
-  std::vector<float> first_;              // of each pixel: what its first ray has seen
-  std::vector<uint32_t> indices_;         // of each pixel: in `measured_`
-  std::vector<float> arriving_;           // of each pixel: light of lamps, by light paths
+  double typicalSeen_ = 0;          // what a ray sees that sees a lamp: the mean of that, weighted by itself
+  std::vector<float> first_;        // of each pixel: what its first ray has seen
+  std::vector<uint32_t> indices_;   // of each pixel: in `measured_`
+  std::vector<Arriving> arriving_;  // of each pixel
   std::vector<EdgePixel> measured_;
 };
 
@@ -308,7 +337,7 @@ class EdgeSearch {
 
 std::unique_ptr<const LightEdges> LightEdges::Find(const RenderScene& scene, const Integrator& integrator,
                                                    const RenderSettings& settings, const PixelRect& crop, int threads) {
-  if (integrator.Paths() == TracedPaths::Light) return nullptr;
+  if (!integrator.SeparatesSeenLight()) return nullptr;
   if (!settings.SamplesLightEdges() || settings.sensor.Limits()) return nullptr;
   if (PixelFilter(settings.filter).SquaredWeight() != 1) return nullptr;
   if (!scene.lighting->HasLightThatCanBeHit() && scene.lighting->InfiniteCount() == 0) return nullptr;

@@ -45,10 +45,15 @@ void PassSequence::MakePhotonStore() {
 }
 
 void PassSequence::Add(uint32_t done, uint32_t count) {
-  // Here and not before: it can be stopped, as passes can.
-  if (!hasSoughtEdges_) edges_ = LightEdges::Find(scene_, integrator_, settings_, film_->Crop(), threads_);
-  hasSoughtEdges_ = true;
   if (photons_) before_ = photons_->Statistics();
+  if (!hasSoughtEdges_) {  // here and not before, so that it can be stopped as passes can
+    RenderScene scene = scene_;
+    scene.lighting = std::make_shared<const LightingServices>(lighting_);
+    auto edges = LightEdges::Find(scene, integrator_, settings_, film_->Crop(), threads_);
+    CheckStop();
+    edges_ = std::move(edges);
+    hasSoughtEdges_ = true;
+  }
   const uint32_t end = done + count;
   while (done < end) {
     const uint32_t milestone = std::bit_ceil(done + 1);

@@ -236,13 +236,17 @@ class CameraSide final : public PathVisitor {
   float Found() const override { return sample_.radiance.Average(); }
 
  private:
-  // For the pilot: no technique but that of camera paths finds light that media emit along them.
+  // For the pilot: no technique but that of camera paths finds light that media emit along them. Beyond a vertex where
+  // camera paths may end, not all of them do.
   void ReportGlow(const Subpath& camera, const Color& seen) {
+    size_t first = 0;
+    while (first < camera.Count() && camera[first].isDelta) ++first;
     ConnectedPath path;
+    path.sums.isBeyond = first < camera.Count() && camera[first].CanMerge();
     path.s = 0;
     path.t = static_cast<int>(camera.Count()) + 2;
     path.value = seen;
-    path.sums.Of(TechniqueGroup::Hit).Add(1);
+    path.sums.Of(path.sums.isBeyond ? BeyondOf(TechniqueGroup::Hit) : TechniqueGroup::Hit).Add(1);
     sample_.context.observer->Observe(path);
   }
   // Cost of merging with a beam, in merges with photons on surfaces.
@@ -395,6 +399,7 @@ class BidirectionalIntegrator final : public Integrator {
       : settings_(settings), lightPaths_(settings.counts.LightPaths()) {}
 
   TracedPaths Paths() const override { return TracedPaths::Both; }
+  bool SeparatesSeenLight() const override { return true; }
   std::optional<PhotonSettings> Photons() const override {
     return settings_.merges ? std::optional(settings_.photons) : std::nullopt;
   }

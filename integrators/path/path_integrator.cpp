@@ -23,6 +23,7 @@ class PathIntegrator final : public Integrator {
   }
 
   TracedPaths Paths() const override { return TracedPaths::Camera; }
+  bool SeparatesSeenLight() const override { return true; }
   std::vector<std::shared_ptr<const Material>> MaterialsAfterWide() const override { return afterWide_; }
   Color Sample(const Ray* ray, const SampleContext& context) const override {
     return TraceCameraPath(context, settings_, *ray, nullptr);

@@ -66,6 +66,7 @@ class SppmIntegrator final : public Integrator {
         glowing_(std::move(glowing)) {}
 
   TracedPaths Paths() const override { return TracedPaths::Both; }
+  bool SeparatesSeenLight() const override { return true; }
   bool FollowsCameraPaths() const override { return false; }
   Color Sample(const Ray* ray, const SampleContext& context) const override;
   std::optional<PhotonSettings> Photons() const override { return settings_.photons; }

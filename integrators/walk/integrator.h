@@ -138,7 +138,8 @@ struct SampleContext {
   // arrived is recorded for learned selection. Null: not wanted.
   TestedSamples* tested = nullptr;
   MediumTimes* mediumTimes = nullptr;  // null: not wanted
-  // Factor on the light that the ray meets before anything scatters it: 1 / n if the sample has n rays that look for it.
+  // Factor on the light that the ray meets before anything scatters it. If the sample has n rays that look for it: 1 / n
+  // times the ray's weight over that of the first. Read by integrators that say so (Integrator::SeparatesSeenLight).
   float seenShare = 1;
   // Nothing but that light is wanted: the path ends where the ray does. There is no light path.
   bool isForSeenLight = false;
@@ -167,6 +168,8 @@ class Integrator {
   // ray (the pixel is not wanted, or the integrator traces light paths only) it records those only and returns black.
   // Light paths: as many as the full image has pixels, times 2^Log2LightPaths(), are one sample per pixel.
   virtual Color Sample(const Ray* ray, const SampleContext& context) const = 0;
+  // True if Sample follows SampleContext::seenShare and isForSeenLight, so that a sample may have several camera rays.
+  virtual bool SeparatesSeenLight() const { return false; }
   // Light paths for each camera path, as a power of two; of TracedPaths::Both.
   virtual int Log2LightPaths() const { return 0; }
   // Materials that take the place of those of the scene behind a wide scattering (WalkSettings::materialsAfterWide), or

@@ -282,9 +282,9 @@ struct ErrorsOfOneLight {
 };
 
 // Converts the candidates from several lights at a vertex to one, and adds again those with several that have less
-// error in equal time than any with one.
+// error in equal time than any with one. `ofGuide`: factor of the guide on the costs of candidates that merge.
 void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Records& records, int pixels, int passes,
-                        RenderPilot& pilot) {
+                        double ofGuide, RenderPilot& pilot) {
   const ErrorsOfOneLight errors(spreads, records, passes);
   const auto several = CostsOf(counted, pixels), one = CostsOf(WithOneLight(counted, spreads.path), pixels);
   const std::vector<PilotCandidate> before = pilot.candidates;
@@ -296,8 +296,8 @@ void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Re
       const size_t whole =
           candidate.integrator == "path" ? 0 : Find(candidate.integrator == "vcm", counts.log2LightPaths, false, 1);
       const size_t ending = EndingOf(whole) < kCandidates ? EndingOf(whole) : whole;
-      candidate.cost -=
-          std::lerp(several[whole].paths - one[whole].paths, several[ending].paths - one[ending].paths, ends);
+      candidate.cost -= (Merges(whole) ? ofGuide : 1.0) * std::lerp(several[whole].paths - one[whole].paths,
+                                                                    several[ending].paths - one[ending].paths, ends);
     }
   }
   const PilotCandidate* const best = pilot.Best();
@@ -418,8 +418,9 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     PilotPasses guided(guidedView, combined, grid, threads);
     CountGuided(integrators, photons, passes.wider, threads, guided, grid.Pixels(), passes.counted, costs);
   }
-  for (size_t k = 0; k < kCandidates && (isGuided || willBeGuided); ++k)
-    if (Merges(k)) costs[k] = {kDensities * costs[k].paths, kDensities * costs[k].merging};
+  const double ofGuide = isGuided || willBeGuided ? kDensities : 1.0;
+  for (size_t k = 0; k < kCandidates; ++k)
+    if (Merges(k)) costs[k] = {ofGuide * costs[k].paths, ofGuide * costs[k].merging};
   std::vector<PilotCandidate> all = CandidatesWith(costs);
   if (!records.SetErrors(passCount, filter.SquaredWeight(), isSobol, all)) return {};
   for (size_t k = 0; k < kCandidates && willBeGuided; ++k)
@@ -428,7 +429,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   AddMixed(all, costs, grid, records.LeastError(), pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);
-  if (choosesLights) ChooseLightSamples(passes.counted, passes.spreads, records, grid.Pixels(), passCount, pilot);
+  if (choosesLights)
+    ChooseLightSamples(passes.counted, passes.spreads, records, grid.Pixels(), passCount, ofGuide, pilot);
   const EmissionGuide* const guide = isGuided ? guiding->Guide() : willBeGuided ? learned->Guide() : nullptr;
   if (settings.values.IsOn("merge")) AddSppm(scene, guide, combined, grid, records, passCount, threads, pilot);
   return pilot;

@@ -31,8 +31,8 @@ struct PilotCandidate {
   double uncertainty = 0;  // standard error of `error`
   double cost = 0;         // of a sample, nanoseconds of a typical machine
   double missing = 0;      // part of the light that it cannot find
-  // Of sppm, after kBlurredPasses: the factor on `error` since the passes of which the pilot has the radius, because it
-  // shrinks; and the squared bias, times the passes.
+  // Of sppm: the factor by which the noise of a sample grows from kTypicalPasses to kBlurredPasses, because the radius
+  // shrinks; and the squared bias after kBlurredPasses, times their number.
   double noiseGrowth = 1, biasError = 0;
   double gainOfSobol = 1;  // by which well-distributed samples lower the error; `error` is that of those
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
@@ -47,7 +47,7 @@ struct PilotCandidate {
   std::string Describe() const { return counts.Describe(integrator); }
 
   // Error of a picture that takes a second per pixel.
-  double ErrorTimesCost() const { return error * cost * 1e-9; }
+  double ErrorTimesCost() const { return (error * noiseGrowth + biasError) * cost * 1e-9; }
   // The same, if the error is larger than estimated by twice its standard error, and where photons are merged with
   // their blur. So of equals the unbiased one is chosen.
   double MostErrorTimesCost() const {

@@ -163,24 +163,26 @@ void Recorder::AddAlike(const ConnectedPath& path, double value) {
   for (double& sum : sums_.unconnected.squares) sum += weighted * weighted;
 }
 
-void Recorder::KeepRare(const ConnectedPath& path, double value, size_t pixel, const PerCandidate& factors) {
+void Recorder::KeepRare(const ConnectedPath& path, double value, size_t pixel, const Factors& found) {
+  const PerCandidate& factors = found.factors;
   if (*std::max_element(factors.begin(), factors.end()) <= kRare) return;
   const double weighted = path.weight * value;
   for (size_t k = 0; k < kCandidates; ++k) {
     const double expected = renders_ * path.weight / factors[k];
     if (factors[k] > kRare && expected < mostPasses_)
-      Keep({pixel, value * factors[k], expected, weighted, weighted * value * factors[k]}, rare[k]);
+      Keep({pixel, value * factors[k], expected, weighted, weighted * value * factors[k], found.ofLight[k]}, rare[k]);
   }
 }
 
 void Recorder::AddSplat(const ConnectedPath& path, double value, size_t pixel) {
   Splat splat{pixel, path.s + path.t == 2, path.weight * value, {}, {}};
   if (Known(path.sums) > 0) {
-    const auto [squares, factors, ofLight] = FactorsOf(path.sums, 1 / splatCount_);
+    const Factors found = FactorsOf(path.sums, 1 / splatCount_);
+    const auto& [squares, factors, ofLight] = found;
     for (size_t k = 0; k < kCandidates; ++k)
       splat.squares[k] = squares[k] > 0 ? splat.weighted * value * factors[k] : -1;
     splat.ofLight = ofLight;
-    KeepRare(path, value, pixel, factors);
+    KeepRare(path, value, pixel, found);
   } else {
     splat.squares.fill(splat.weighted * value / splatCount_);
     splat.ofLight.fill(1);
@@ -208,7 +210,8 @@ void Recorder::Add(const ConnectedPath& path, double value) {
   const double weighted = path.weight * value, known = Known(path.sums);
   (path.s + path.t == 2 ? here.seen : here.mean) += weighted;
   if (!(known > 0)) return AddAlike(path, value);
-  const auto [squares, factors, ofLight] = FactorsOf(path.sums, 1);
+  const Factors moments = FactorsOf(path.sums, 1);
+  const auto& [squares, factors, ofLight] = moments;
   for (size_t k = 0; k < kCandidates; ++k) {
     here.square[k] += weighted * value * factors[k];
     here.ofLight[k] += weighted * value * factors[k] * ofLight[k];
@@ -216,7 +219,7 @@ void Recorder::Add(const ConnectedPath& path, double value) {
   }
   for (size_t k = 1; k < kCandidates; ++k)
     if (Merges(k) && squares[WithoutMerging(k)] == 0) here.mergedOnly[k] += weighted * value * factors[k];
-  KeepRare(path, value, pixel_, factors);
+  KeepRare(path, value, pixel_, moments);
   const TechniqueGroup own = GroupOf(path);
   Found& found = pixels_.found[pixel_];
   if (const double bySplats = path.sums.Of(TechniqueGroup::Light).squares; bySplats < known) {
@@ -327,7 +330,7 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   // More light paths, or more merges, leave the points in the pixels as they are, and what these gain.
   std::array<double, kCandidates> gains;
   for (size_t k = 0; k < candidates.size(); ++k) {
-    const double ofLight = PartOfLight(k, brightness);
+    const double ofLight = PartOfLight(k, brightness, pixels, isLeftOut);
     const double ofCamera = GainOfSobol(candidates[WithFewestSamples(k)].error);
     gains[k] = isSobol ? 1 / ((1 - ofLight) / ofCamera + ofLight / std::min(kGainOfSobolForLight, ofCamera)) : 1.0;
   }
@@ -386,11 +389,13 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
   candidate.uncertainty = std::sqrt(variances);
 }
 
-double Records::PartOfLight(size_t k, const Brightness& brightness) const {
+double Records::PartOfLight(size_t k, const Brightness& brightness, const std::vector<Moments>& pixels,
+                            const std::vector<char>& isLeftOut) {
   double all = 0, ofLight = 0;
-  for (size_t i = 0; i < pixels_.moments.size(); ++i) {
-    all += brightness.scales[i] * pixels_.moments[i].square[k];
-    ofLight += brightness.scales[i] * pixels_.moments[i].ofLight[k];
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    if (isLeftOut[i]) continue;
+    all += brightness.scales[i] * pixels[i].square[k];
+    ofLight += brightness.scales[i] * pixels[i].ofLight[k];
   }
   return all > 0 ? std::clamp(ofLight / all, 0.0, 1.0) : 0.0;
 }
@@ -431,6 +436,7 @@ void Records::LeaveOutRare(size_t k, int passes, double mean, const std::vector<
     missing += event.light;
     if (expected > 1 || missing > most) return;
     pixels[event.pixel].square[k] -= event.square;
+    pixels[event.pixel].ofLight[k] -= event.square * event.ofLight;
     pixels[event.pixel].missing[k] += event.light;
   }
 }

@@ -76,6 +76,7 @@ struct RareEvent {
   double expected;  // occurrences in a typical render, times the passes of the pilot
   double light;     // what it adds to the mean of the pixel, summed over the pilot's samples
   double square;    // to its second moment
+  double ofLight;   // the part of that which splats and photons find
 };
 // Samples of a typical render. Events that it is expected to hold less than once are left out of a candidate's error
 // and count as missing light.
@@ -180,7 +181,7 @@ class Recorder final : public PathObserver {
   void Add(const Splat& splat);
   // Adds a path whose densities by other techniques are unknown, as if all candidates found it in the same way.
   void AddAlike(const ConnectedPath& path, double value);
-  void KeepRare(const ConnectedPath& path, double value, size_t pixel, const PerCandidate& factors);
+  void KeepRare(const ConnectedPath& path, double value, size_t pixel, const Factors& found);
 
   // What the light path of a photon that is merged at a first hit adds to the same pixel by its connection to the lens,
   // on average: the same light path, counted twice. `squares`: Σ (n r)².
@@ -252,8 +253,9 @@ class Records {
   // hold less than one of them and they are a negligible part of the light.
   void LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,
                     std::vector<Moments>& pixels) const;
-  // The part of the error of candidate `k` by splats and photons.
-  double PartOfLight(size_t k, const Brightness& brightness) const;
+  // The part of the second moments of candidate `k` by splats and photons, weighted as errors are.
+  static double PartOfLight(size_t k, const Brightness& brightness, const std::vector<Moments>& pixels,
+                            const std::vector<char>& isLeftOut);
   // The thousandth of the pixels in which even the best candidate is noisiest, marked by 1: a firefly there, which all
   // candidates have, would hide their differences elsewhere.
   std::vector<char> Hopeless(const std::vector<Moments>& pixels, const std::vector<double>& scales) const;

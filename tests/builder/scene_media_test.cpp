@@ -194,7 +194,11 @@ TEST(SceneMedia, AreAroundLights) {
   EXPECT_THAT(LightMedia(point, ""), ElementsAre(kVacuum));
   EXPECT_THAT(LightMedia(point), ElementsAre(kFog));  // fog is everywhere
   EXPECT_THAT(LightMedia(kFogBall + point + "Translate 7 0 0 " + point), ElementsAre(kFog, kVacuum));
-  EXPECT_THAT(LightMedia("MediumInterface \"\" \"milk\" " + point), ElementsAre(kMilk));
+  // Nothing separates milk from the fog that the camera is in.
+  EXPECT_THAT(LightMedia("MediumInterface \"\" \"milk\" " + point), ElementsAre(kFog));
+  EXPECT_THAT(Build("MediumInterface \"\" \"milk\" " + point, kInFog).warnings,
+              ElementsAre(HasSubstr("warning: the light is said to be in the medium \"milk\" and the camera in the "
+                                    "medium \"fog\", but no surface separates the two")));
   EXPECT_THAT(LightMedia(kFogBall + "MediumInterface \"\" \"milk\" " + point), ElementsAre(kFog));
   EXPECT_THAT(Build(kFogBall + "MediumInterface \"\" \"milk\" " + point, kInFog).warnings,
               ElementsAre(HasSubstr("test.pbrt:7:27: warning: the light is in the medium \"fog\" by the surfaces")));

@@ -23,8 +23,8 @@ std::string Lamps(const std::string& filter = "gaussian", const std::string& fil
                      "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Translate 1 0.9 0 Shape "
                      "\"sphere\" \"float radius\" 0.6 AttributeEnd\n";
   const auto lamp = [&](const char* at, const char* radiance, const char* shape) {
-    text += std::string("AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [") + radiance + "] \"string lightGroup\" \"" +
-            radiance + "\" Translate " + at + " Shape " + shape + " AttributeEnd\n";
+    text += std::string("AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [") + radiance +
+            "] \"string lightGroup\" \"" + radiance + "\" Translate " + at + " Shape " + shape + " AttributeEnd\n";
   };
   lamp("-1 0.8 0", "20 15 5", "\"sphere\" \"float radius\" 0.12");
   lamp("1 0.9 0", "15 15 20", "\"sphere\" \"float radius\" 0.15");
@@ -102,17 +102,38 @@ TEST(LightEdges, SameBytesForAnyThreadsAndCrop) {
     overrides.integrator = integrator;
     const Image whole = RenderText(Lamps(), 8, overrides, 1).image;
     EXPECT_EQ(whole.data, RenderText(Lamps(), 8, overrides, 3).image.data) << integrator;
-    if (std::string(integrator) == "sppm") continue;
-    overrides.crop = "9,30,3,20";
+    if (std::string(integrator) == "sppm") continue;  // whose photons learn from what the camera sees
     overrides.values["guide-paths"] = overrides.values["learn-lights"] = false;
-    const Image crop = RenderText(Lamps(), 8, overrides).image;
-    overrides.crop.reset();
     const Image unguided = RenderText(Lamps(), 8, overrides).image;
-    for (int y = 0; y < crop.height; ++y) {
-      for (int x = 0; x < crop.width; ++x)
-        ASSERT_EQ(crop.At(x, y, 1), unguided.At(x + crop.offsetX, y + crop.offsetY, 1)) << x << " " << y;
+    // The second is far from the brightest lamps.
+    for (const char* window : {"9,30,3,20", "0,8,14,24"}) {
+      overrides.crop = window;
+      const Image crop = RenderText(Lamps(), 8, overrides).image;
+      for (int y = 0; y < crop.height; ++y) {
+        for (int x = 0; x < crop.width; ++x)
+          ASSERT_EQ(crop.At(x, y, 1), unguided.At(x + crop.offsetX, y + crop.offsetY, 1)) << x << " " << y;
+      }
     }
   }
+}
+
+// A lamp that is as bright everywhere has no edges within, however bright another one is.
+TEST(LightEdges, AreNotWithinALamp) {
+  const std::string text =
+      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
+      "LookAt 0 0 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 45\n" +
+      World(4) +
+      "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2] Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0 9 "
+      "-9 0 -9 9 0 9 9 0]\nAreaLightSource \"diffuse\" \"rgb L\" [1e5 1e5 1e5] Translate 0 0 -1 "
+      "Shape \"sphere\" \"float radius\" 0.02\n";
+  RenderOverrides overrides = Edges(true);
+  overrides.integrator = "path";
+  const auto rays = [&](const char* crop) {
+    overrides.crop = crop;
+    return RenderText(text, 4, overrides).outcome.counts.cameraRays;
+  };
+  EXPECT_EQ(rays("0,10,0,32"), 4u * 10 * 32);
+  EXPECT_GT(rays("14,18,14,18"), 4u * 4 * 4);
 }
 
 }  // namespace

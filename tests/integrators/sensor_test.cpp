@@ -37,6 +37,7 @@ Shape "sphere" "float radius" 0.6
 RenderOverrides With(const std::string& integrator) {
   RenderOverrides overrides;
   overrides.integrator = integrator;
+  overrides.values["light-edges"] = false;  // which a limit on samples turns off
   return overrides;
 }
 
