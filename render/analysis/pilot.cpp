@@ -190,17 +190,20 @@ bool IsWellKnown(const std::vector<PilotCandidate>& all) {
 }
 
 // Sets the costs of candidates that merge to those with guided light paths: more of their vertices are seen. What they
-// do is counted in a pass of their own, `guided`. `counted`: without a guide.
+// do is counted in a pass of their own. `scene`: with the guide. `counted`: without it.
 void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& photons, double wider, int threads,
-                 PilotPasses& guided, int pixels, Counted counted, std::span<CandidateCost> costs) {
-  PhotonStore store(photons, static_cast<uint64_t>(pixels), nullptr);
+                 const RenderScene& scene, const RenderSettings& settings, const Grid& grid, Counted counted,
+                 std::span<CandidateCost> costs) {
+  const RenderScene view = WithWavelengths(scene);
+  PilotPasses guided(view, settings, grid, threads);
+  PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
   guided.TracePhotons(*integrators.vcm, store, 0);
   const PhotonPass& gather = store.Open(0, threads, wider);
   counted.stored = gather.map->Size();
   counted.bdpt = counted.vcm = guided.Trace(*integrators.vcm, 0, &gather);
   counted.endingBdpt = counted.endingVcm = guided.Trace(*integrators.endingVcm, 0, &gather);
   store.EndGathering();
-  const auto ofGuided = CostsOf(counted, pixels);
+  const auto ofGuided = CostsOf(counted, grid.Pixels());
   for (size_t k = 0; k < kCandidates; ++k)
     if (Merges(k)) costs[k] = ofGuided[k];
 }
@@ -414,9 +417,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const bool willBeGuided = learned && learned->Guide();
   if (willBeGuided) {
     view.lighting = std::make_shared<const LightingServices>(lighting->With(nullptr, learned->Guide()));
-    const RenderScene guidedView = WithWavelengths(view);
-    PilotPasses guided(guidedView, combined, grid, threads);
-    CountGuided(integrators, photons, passes.wider, threads, guided, grid.Pixels(), passes.counted, costs);
+    CountGuided(integrators, photons, passes.wider, threads, view, combined, grid, passes.counted, costs);
   }
   const double ofGuide = isGuided || willBeGuided ? kDensities : 1.0;
   for (size_t k = 0; k < kCandidates; ++k)
