@@ -32,7 +32,7 @@ constexpr int kReach = kRounds + 3;
 // ray, 6, over the relative variance of all other light, 0.1 to 1, of which Sobol points leave a half.
 constexpr double kWorth = 8;
 
-// What the camera sees through pixels.
+// Traces single rays and paths from the camera.
 class Probe {
  public:
   // `integrator`: by whose weights light is seen: where light paths find a lamp's picture, its edges have little noise.
@@ -69,7 +69,7 @@ class Probe {
   }
   // The light that a ray sees before anything scatters it.
   float Seen(int x, int y, uint32_t index, Sampler& sampler) const { return Sample(x, y, index, true, sampler); }
-  // The same of a ray that starts at a film point.
+  // The light that a ray through a film point sees before anything scatters it.
   double SeenAt(const Point2& film, uint32_t index, Sampler& sampler) const {
     sampler.StartPixelSample(0, -1, index);
     PixelRay ray;
@@ -261,7 +261,7 @@ class EdgeSearch {
       here.light += splat.value.Average() / static_cast<float>(splats.Paths());
       ++here.splats;
     }
-    // By rays through some of the film points where light arrives, wherever they are.
+    // The typical brightness of a lamp: by rays through some of these points, over the whole film whatever the crop.
     constexpr size_t kTypicalRays = 256;
     const size_t step = std::max<size_t>(splats.Splats().size() / kTypicalRays, 1);
     Sampler sampler(SamplerKind::Sobol, kProbeSeed);
@@ -369,7 +369,7 @@ Color EdgeSampler::RadianceOfMany(int x, int y, uint64_t number, int rays, Sampl
   const float share = 1.0f / static_cast<float>(rays);
   context.seenShare = share;
   Color radiance = TestedRadiance(pass_.integrator, ray, context);
-  // As the samples of an adaptive film (AdaptiveSampler).
+  // The two halves of the samples of an adaptive film have sequences of their own (AdaptiveSampler).
   const bool hasHalves = pass_.allocation && pass_.film.HasHalf();
   Sampler& sampler = hasHalves && !AdaptiveSampler::IsInHalf(number) ? otherHalf_ : sampler_;
   const auto more = static_cast<uint64_t>(rays - 1), first = (hasHalves ? number / 2 : number) * more;

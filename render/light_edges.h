@@ -1,4 +1,5 @@
-// Where the camera sees the edges of bright lights: a lamp, its blurred image behind a thin lens, the sun in the sky.
+// Edges of bright lights, as the camera sees them: of a lamp, of its blurred image by a thin lens, of the sun in the
+// sky.
 //
 // A sample of a pixel that a bright lamp half fills is either very bright or not, and its noise hides that of
 // everything else. Whether it is bright takes one ray to know, not a path. So samples of such pixels have several

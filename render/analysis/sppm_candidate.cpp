@@ -34,7 +34,7 @@ class Measured {
  public:
   explicit Measured(const Records& records) : records_(records) {}
 
-  // What a pass finds, by pixel: light that is not seen itself, and an estimate of its bias.
+  // Results of a pass, by pixel: light that is not seen directly, and the estimate of its bias.
   struct Found {
     std::vector<double> light, bias;
   };
@@ -190,7 +190,7 @@ std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const Rend
   // radius: between r⁴, that of smooth light, and r, that of edges.
   const double alpha = counts.alpha, longer = kBlurredPasses / kTypicalPasses;
   candidate.noiseGrowth = std::pow(longer, 1 - alpha);
-  // Where photons are few, the estimate is noise, and what is typical takes its place: in a Cornell box and in
+  // A typical bias, which takes the place of the estimate where its noise is larger: in a Cornell box and in
   // scenes/rainbow the squared bias after 350 passes was 0.4 and 1.8 times the noise.
   constexpr double kTypicalBias = 0.6;
   const double scale = kBlurredPasses / grid.Fewer() * std::pow(longer, 2 * (alpha - 1)),
