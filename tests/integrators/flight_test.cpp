@@ -1,6 +1,8 @@
 // Rays through media that cannot be traced, and collisions within the rounding of positions.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "integrators/walk/flight.h"
 #include "integrators/walk/walk.h"
 #include "sampling/warp.h"
@@ -95,6 +97,47 @@ TEST(Flight, StepsMayBeShorterThanRounding) {
   EXPECT_GT(steps.smallest, 0);
   const double mean = steps.sum / steps.count * 4e8;
   EXPECT_NEAR(mean, 1, 5 / std::sqrt(steps.count));
+}
+
+// Second moments after a collision, relative to the squared throughput, of a channel and of the sum of all: by
+// integration over distances, for walks that are sampled by the channels' probabilities.
+TEST(Flight, ADarkChannelIsNotMuchNoisierThanTheRest) {
+  const struct {
+    Color throughput, extinction;
+    double mostOfChannel, mostOfSum;
+  } cases[] = {{{1, 1, 1}, {1, 2, 4}, 1.5, 1.001},
+               {{1, 0.01f, 0.01f}, {5, 0.05f, 0.05f}, 20, 1.06},
+               {{1e-4f, 1, 0.5f}, {0.01f, 1, 3}, 1500, 1.02},
+               {{0, 1, 0}, {1, 2, 3}, 1.001, 1.001}};
+  for (const auto& one : cases) {
+    const Color chosen = ChannelsOf(one.throughput);
+    EXPECT_NEAR(chosen.r + chosen.g + chosen.b, 1, 1e-6f);
+    const auto parts = [](const Color& c) {
+      return std::array<double, 3>{static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
+    };
+    const std::array<double, 3> channels = parts(chosen), throughput = parts(one.throughput),
+                                extinction = parts(one.extinction);
+    double moments[3] = {}, ofSum = 0;
+    constexpr double kStep = 1e-3;  // of the logarithm of the distance
+    for (double logT = -14; logT < 10; logT += kStep) {
+      const double t = std::exp(logT), dt = t * kStep;
+      double density = 0, carried[3], sum = 0;
+      for (size_t c = 0; c < 3; ++c) {
+        const double p = extinction[c] * std::exp(-extinction[c] * t);
+        density += channels[c] * p;
+        carried[c] = throughput[c] * p;
+        sum += carried[c];
+      }
+      if (!(density > 0)) continue;
+      for (size_t c = 0; c < 3; ++c) moments[c] += carried[c] * carried[c] / density * dt;
+      ofSum += sum * sum / density * dt;
+    }
+    const double all = throughput[0] + throughput[1] + throughput[2];
+    EXPECT_LT(ofSum / (all * all), one.mostOfSum);
+    for (size_t c = 0; c < 3; ++c) {
+      EXPECT_LE(moments[c], one.mostOfChannel * throughput[c] * throughput[c]) << c;
+    }
+  }
 }
 
 }  // namespace
