@@ -1,5 +1,6 @@
 #include "render/analysis/plan.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "base/parallel.h"
@@ -42,7 +43,11 @@ std::string Short(double value) {
 IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts,
                                   int threads, RenderPilot& pilot) {
   const auto once = std::make_shared<const TechniqueCounts>();
-  if (facts.lights == 0) return {{"integrator", "path", "nothing emits"}, once};
+  if (facts.lights == 0) {
+    const bool mediaGlow =
+        std::any_of(scene.media.begin(), scene.media.end(), [](const auto& medium) { return medium->IsEmissive(); });
+    return {{"integrator", "path", mediaGlow ? "there is no light but that of media" : "nothing emits"}, once};
+  }
   if (facts.tracing == 0) return {{"integrator", "path", "no light traces light paths"}, once};
   pilot = RunPilot(scene, settings, threads);
   const PilotCandidate* best = pilot.Best();
