@@ -225,13 +225,16 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
   joint.isMerged = true;
   joint.mergesAtCamera = true;
   const float probability = sample.settings.counts.merging.At(sample.film);
+  const float sheetDistance = Photon::SheetDistance(vertex.point.position, sample.mergeRadius);
   sample.lookup.used.clear();
   Color sum, bias;
   for (size_t i = 0; i < found.size(); ++i) {
     const uint32_t index = found[i];
     const Photon& photon = (*pass.map)[index];
     if (i + kFetched < found.size()) pass.map->PrefetchPathOf((*pass.map)[found[i + kFetched]]);
-    if (photon.depth + sample.camera.Count() > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
+    if (photon.depth + sample.camera.Count() > most ||
+        !photon.IsOnSurface(vertex.bsdf.Ng(), pass.map->OffsetFrom(vertex.point.position, index), sheetDistance))
+      continue;
     const Vector3& toLight = photon.toPrevious;
     const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);
     const Color diffuse = f.diffuse * photon.flux, specular = f.specular * pass.map->SpecularFlux(photon);

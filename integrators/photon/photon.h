@@ -251,12 +251,24 @@ struct alignas(64) Photon {
   AreaDensity PreviousReverse(SolidAngleDensity towardsLight) const {
     return towardsLight * SolidAnglePerArea{static_cast<double>(previousSolidAnglePerArea)};
   }
-  // True if the photon may lie on a surface with normal `Ng`, and not around a corner from it. A photon on the other
-  // side of a thin wall passes this test, but the BSDF scatters nothing of it.
-  bool IsOnSurface(const Normal3& Ng) const {
-    constexpr float cosine = 0.8f;
+  // Distance between two parallel sheets from which on photons within `radius` of `at` are told apart.
+  static float SheetDistance(const Point3& at, float radius) {
+    constexpr float kOfRadius = 0.125f, kRounding = 4e-7f;
+    return kOfRadius * radius + kRounding * MaxAbsComponent(at);
+  }
+  // True if the photon may lie on the same surface as a point with the normal `Ng`: not around a corner from it, and
+  // not on the next of two parallel sheets. `offset`: from the point to the photon. On a sphere the chord between two
+  // points is perpendicular to the mean of their normals, so that the offset along it is the distance of sheets,
+  // whatever the curvature. A photon on the other side of a thinner wall passes this test, but the BSDF scatters
+  // nothing of it.
+  bool IsOnSurface(const Normal3& Ng, const Vector3& offset, float sheetDistance) const {
+    constexpr float kCosine = 0.8f;
     const Vector3 direction = normal.Direction();
-    return Sqr(glm::dot(direction, Ng)) > cosine * cosine * LengthSquared(direction);
+    const float cosine = glm::dot(direction, Ng), square = LengthSquared(direction);
+    if (Sqr(cosine) <= kCosine * kCosine * square) return false;
+    const float length = std::sqrt(square);
+    const Vector3 twiceMean = direction + std::copysign(length, cosine) * Ng;
+    return std::abs(glm::dot(offset, twiceMean)) <= 2 * length * sheetDistance;
   }
 };
 static_assert(sizeof(Photon) == 64, "photons are counted in millions");

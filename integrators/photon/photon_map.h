@@ -69,6 +69,10 @@ class PhotonMap {
   const VolumePhoton& VolumeOf(uint32_t index) const { return volume_[index - firstVolume_]; }
 
   const Photon& operator[](uint32_t index) const { return photons_[index]; }
+  // From `point` to a photon on a surface.
+  Vector3 OffsetFrom(const Point3& point, uint32_t index) const {
+    return grid_.Positions()[index] - Point3(point - center_);
+  }
   // Flux of a photon for specular lobes; a light may send them other radiance than diffuse lobes.
   const Color& SpecularFlux(const Photon& photon) const {
     return photon.specular == Photon::kSame ? photon.flux : specular_[photon.specular];

@@ -137,13 +137,15 @@ class RadianceEstimate final : public PhotonGatherer {
     const float radius = RadiusAt(length);
     if (pass_.use) pass_.use->FetchSums(found_.first(std::min(found_.size(), kFetched)));
     lookup_.used.clear();
+    const float sheetDistance = Photon::SheetDistance(vertex.point.position, radius);
     Color sum, bias;
     for (size_t i = 0; i < found_.size(); ++i) {
       const uint32_t index = found_[i];
       const Photon& photon = (*pass_.map)[index];
       // Both depths count the vertex.
       if (static_cast<int>(photon.depth) + events > settings_.maxDepth + 1) continue;
-      if (!photon.IsOnSurface(vertex.bsdf.Ng())) continue;
+      if (!photon.IsOnSurface(vertex.bsdf.Ng(), pass_.map->OffsetFrom(vertex.point.position, index), sheetDistance))
+        continue;
       const BsdfEvaluation f = vertex.Evaluate(photon.toPrevious, TransportMode::Radiance);
       if (f.pdfForward.value > kWide) continue;
       // The terms of the sum are not shared: they would be rounded differently than without the bias.

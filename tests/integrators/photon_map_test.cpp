@@ -346,11 +346,32 @@ TEST(Photon, LiesOnASurfaceByItsNormal) {
     const float cosine = std::abs(glm::dot(a, b));
     if (std::abs(cosine - 0.8f) < 2e-4f) continue;  // as exact as the stored normal
     ++decided;
-    on += photon.IsOnSurface(b);
-    ASSERT_EQ(cosine > 0.8f, photon.IsOnSurface(b)) << cosine;
+    on += photon.IsOnSurface(b, Vector3(0.0f), 0.1f);
+    ASSERT_EQ(cosine > 0.8f, photon.IsOnSurface(b, Vector3(0.0f), 0.1f)) << cosine;
   }
   EXPECT_GT(decided, 19900);
   EXPECT_NEAR(0.2, static_cast<double>(on) / decided, 0.015) << "the cosine is uniform";
+}
+
+// On a sphere of any radius, and not on the next of two sheets, whichever way their normals point.
+TEST(Photon, LiesOnOneOfTwoSheets) {
+  Rng rng(13);
+  for (int i = 0; i < 20000; ++i) {
+    const Normal3 a = SampleUniformSphere({rng.NextFloat(), rng.NextFloat()});
+    const Frame frame = Frame::FromNormal(a);
+    const float angle = 0.6f * rng.NextFloat(), azimuth = 6.28f * rng.NextFloat();
+    const Normal3 b =
+        frame.ToWorld({std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle)});
+    const float radius = std::exp(10 * rng.NextFloat() - 5);
+    Photon photon;
+    photon.normal = PackedNormal(i % 2 ? b : -b);
+    const Vector3 chord = radius * (b - a);
+    EXPECT_TRUE(photon.IsOnSurface(a, chord, 1e-3f * radius)) << radius << " " << angle;
+    const float gap = radius * (0.02f + rng.NextFloat());
+    const Vector3 toNext = chord + gap * b;
+    EXPECT_FALSE(photon.IsOnSurface(a, toNext, 0.9f * gap)) << gap;
+    EXPECT_TRUE(photon.IsOnSurface(a, toNext, 1.1f * gap)) << gap;
+  }
 }
 
 TEST(PhotonUse, AddsTheContributionsOfAPath) {
