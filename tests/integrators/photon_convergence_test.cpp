@@ -91,5 +91,28 @@ INSTANTIATE_TEST_SUITE_P(Of, PhotonConvergence,
                          testing::Values(Convergence{"sppm", -0.95, -0.55}, Convergence{"vcm", -1.3, -0.6}),
                          [](const auto& info) { return info.param.integrator; });
 
+// The wall of a lampshade in two layers, whose distance is a quarter of the radius within which photons are gathered.
+TEST(PhotonsOnSheets, OfOneDoNotLightTheNext) {
+  const std::string text =
+      "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nLookAt 0 0 6  0 0 0  0 1 0\n"
+      "Camera \"perspective\" \"float fov\" 20\nWorldBegin\n"
+      "LightSource \"point\" \"point3 from\" [0 0 -1] \"rgb I\" [5 5 5]\n"
+      "Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.3] \"rgb transmittance\" [0.4 0.4 0.4]\n"
+      "Shape \"sphere\" \"float radius\" 1.9\nShape \"sphere\" \"float radius\" 2\n";
+  RenderOverrides overrides;
+  overrides.integrator = "path";
+  const double mean = MeanOf(RenderText(text, 512, overrides).image).mean;
+  overrides.values["radius"] = 0.4;
+  overrides.values["alpha"] = 1.0;
+  for (const char* integrator : {"sppm", "vcm"}) {
+    overrides.integrator = integrator;
+    overrides.values["direct-photons"] = true;
+    overrides.values["connect"] = false;
+    const double merged = MeanOf(RenderText(text, 256, overrides).image).mean;  // its noise: 1.5 %
+    std::printf("%s: %.4f, path %.4f\n", integrator, merged, mean);
+    EXPECT_NEAR(merged / mean, 1, 0.05) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace lampyr::test
