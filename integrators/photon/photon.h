@@ -259,16 +259,19 @@ struct alignas(64) Photon {
   // True if the photon may lie on the same surface as a point with the normal `Ng`: not around a corner from it, and
   // not on the next of two parallel sheets. `offset`: from the point to the photon. On a sphere the chord between two
   // points is perpendicular to the mean of their normals, so that the offset along it is the distance of sheets,
-  // whatever the curvature. A photon on the other side of a thinner wall passes this test, but the BSDF scatters
+  // whatever the curvature. On a bumpy surface it is not: the more the normals differ, the larger it may be. A photon
+  // on the other side of a thinner wall passes this test, but the BSDF scatters
   // nothing of it.
   bool IsOnSurface(const Normal3& Ng, const Vector3& offset, float sheetDistance) const {
-    constexpr float kCosine = 0.8f;
+    constexpr float kCosine = 0.8f, kBent = 0.25f;
     const Vector3 direction = normal.Direction();
     const float cosine = glm::dot(direction, Ng), square = LengthSquared(direction);
     if (Sqr(cosine) <= kCosine * kCosine * square) return false;
     const float length = std::sqrt(square);
     const Vector3 twiceMean = direction + std::copysign(length, cosine) * Ng;
-    return std::abs(glm::dot(offset, twiceMean)) <= 2 * length * sheetDistance;
+    const float sine = std::sqrt(std::max(1 - Sqr(cosine) / square, 0.0f));
+    const float most = sheetDistance + kBent * sine * std::sqrt(LengthSquared(offset));
+    return std::abs(glm::dot(offset, twiceMean)) <= 2 * length * most;
   }
 };
 static_assert(sizeof(Photon) == 64, "photons are counted in millions");
