@@ -69,7 +69,9 @@ TEST(PhotonGuiding, AgreesWithPathTracing) {
     overrides.values["radius"] = 0.02;
     overrides.values["photons"] = 10000;
     EXPECT_GT(RenderText(text, 32, overrides).outcome.photons->guideComponents, 0u) << integrator;
-    const Replicas guided = RenderReplicas(text, integrator, 16, 32, overrides);
+    // Few photons of sppm come through the window, and a block of 16 pictures may have none of the brightest.
+    const int replicas = integrator == std::string("sppm") ? 64 : 16;
+    const Replicas guided = RenderReplicas(text, integrator, replicas, 32, overrides);
     const Agreement result = CompareReplicas(guided, path, 9, 5e-4);
     std::printf("%s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n",
                 integrator, result.blocks, result.largestZ, result.thresholdZ, result.chiSquared,
