@@ -25,8 +25,8 @@ class LightEdges {
   // Rays of a sample at most.
   static constexpr int kMostRays = 33;
 
-  // Of the pixels of `crop`. Null if no pixel has more than one ray: the settings do not want them, the film limits
-  // samples or has a filter with negative weights (neither can divide a sample), or nothing bright has edges.
+  // Finds the numbers of rays of the pixels of `crop`. Null if all are 1: the settings turn light edges off, the film
+  // limits samples or its filter has negative weights (such samples cannot be divided), or nothing bright has edges.
   static std::unique_ptr<const LightEdges> Find(const RenderScene& scene, const Integrator& integrator,
                                                 const RenderSettings& settings, const PixelRect& crop, int threads);
 

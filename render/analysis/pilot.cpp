@@ -209,9 +209,9 @@ void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& phot
 }
 
 // Factor on the cost of integrators with guided light paths, for the density of the guide at every emission that is
-// weighted, which no count includes. Measured in scenes/pool and mirror and a room with a window pane, 160×90: a sample
-// takes 1.10 to 1.26 times the counted time. In a pool seen from above and a glass of wine, with a guide from the
-// start, 1.26 to 1.55 times, and so does one of sppm.
+// weighted, which no count includes. Samples of vcm take 1.10 to 1.26 times the counted time in scenes/pool and mirror
+// and a room with a window pane (160×90); samples of vcm and sppm take 1.26 to 1.55 times in a pool seen from above and
+// a glass of wine, with a guide from the start.
 constexpr double kDensities = 1.25;
 
 // Adds candidates that decide by the place in the picture whether they merge and whether their camera paths may end

@@ -31,8 +31,8 @@ struct PilotCandidate {
   double uncertainty = 0;  // standard error of `error`
   double cost = 0;         // of a sample, nanoseconds of a typical machine
   double missing = 0;      // part of the light that it cannot find
-  // Of sppm: the factor by which the noise of a sample grows from kTypicalPasses to kBlurredPasses, because the radius
-  // shrinks; and the squared bias after kBlurredPasses, times their number.
+  // Growth of the noise of a sample of sppm from kTypicalPasses to kBlurredPasses, because the radius shrinks; and its
+  // squared bias after kBlurredPasses, times their number. 1 and 0 for all others.
   double noiseGrowth = 1, biasError = 0;
   double gainOfSobol = 1;  // by which well-distributed samples lower the error; `error` is that of those
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
