@@ -77,6 +77,7 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
   view_.lighting = std::make_shared<const LightingServices>(lighting_.With(
       learnsLights || usesLearned ? learning_.get() : nullptr, guiding_ ? guiding_->Guide() : nullptr, !usesLearned));
   view_.guide = paths_ ? paths_->Guide() : nullptr;
+  view_.roulette = paths_ ? paths_->Roulette() : nullptr;
   PathLearning* recorded = RecordsPathsAfter(done) ? paths_.get() : nullptr;
   const RenderCounts counts =
       RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_, *film_, photons_.get(),

@@ -497,7 +497,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
                           .wantsBeams = settings_.merges,
                           .records = StartRecord(context)};
   Walk(context, walk, state, workspace.camera, visitor);
-  if (walk.records) walk.records->EndPath(visitor.Found());
+  if (walk.records) walk.records->EndPath(visitor.Found(), workspace.camera.Count() + 1);
   return sample.radiance;
 }
 

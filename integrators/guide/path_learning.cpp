@@ -52,7 +52,8 @@ PathLearning::PathLearning(int width, int height, size_t recorded, bool forLight
       recorded_(recorded),
       forLight_(forLight),
       always_(always),
-      blocks_(width, height) {}
+      blocks_(width, height),
+      roulette_(blocks_.Layout()) {}
 
 bool PathLearning::IsPromising(double gain) const {
   return gain - 1 > kPromising * (Worthwhile() - 1);
@@ -90,6 +91,10 @@ GainEstimate PathLearning::Test(const std::vector<double>& scales) const {
   double ofMeans = 0;
   for (size_t i = 0; i < latest_.Paths().size(); ++i) {
     const RecordedPath& path = latest_.Paths()[i];
+    if (path.found == 0) {
+      gain.Add(0, 0);
+      continue;
+    }
     const double scale = scales[blocks_.Of(path.pixel)];
     double before = 0;
     double ratioUnguided = 1, ratioAimed = 1;
@@ -197,19 +202,20 @@ bool PathLearning::Decide(uint32_t samples, int threads, bool mayUse) {
       seemsHopeless_ = !isWorthwhile && !IsPromising(gain.Bound(kSurelyNot));
     }
   }
+  roulette_.Learn(latest_, scales);
   const bool hasNews = Keep(scales);
   latest_.Clear();
   if (!always_ && !isWorthwhile && samples >= (seemsHopeless_ ? kHopeless : kLearned)) {
     tried_ = nullptr;
   } else if (hasNews || !tried_) {
     // The guide put to use is made of more events than the one that was tested.
-    std::vector<PlacedEvent> ofCamera = kept_, ofLight = keptOfLight_;
-    tried_ = std::make_shared<const PathGuide>(ofCamera, ofLight, threads);
+    tried_ = std::make_shared<const PathGuide>(kept_, keptOfLight_, threads);
   }
   guide_ = always_ || isWorthwhile ? tried_ : nullptr;
   if (!tried_ || samples >= kLearned) {
     isRecording_ = false;
     kept_ = keptOfLight_ = {};
+    roulette_.End();
   }
   return guide_ != before;
 }
@@ -222,6 +228,7 @@ void PathLearning::Save(ByteWriter& bytes) const {
   bytes.Value(samples_);
   bytes.Value(gain_);
   if (tried_) tried_->Save(bytes);
+  roulette_.Save(bytes);
   bytes.List(blocks_.All());
   bytes.List(latest_.Paths());
   bytes.List(latest_.Events());
@@ -251,6 +258,7 @@ void PathLearning::Load(ByteReader& bytes) {
     tried_ = tried;
     if (hasGuide) guide_ = tried_;
   }
+  roulette_.Load(bytes);
   std::vector<PixelBlocks::Block> blocks = bytes.List<PixelBlocks::Block>(blocks_.Count());
   std::vector<RecordedPath> paths = bytes.List<RecordedPath>(kMostEvents);
   std::vector<RecordedEvent> events = bytes.List<RecordedEvent>(kMostEvents);
@@ -262,7 +270,8 @@ void PathLearning::Load(ByteReader& bytes) {
   for (const RecordedEvent& event : events)
     isSound = isSound && IsSound(event) && event.guidance > 0 && std::isfinite(event.guidance) &&
               std::isfinite(event.foundBefore) && std::isfinite(event.foundOnArrival) && IsFinite(event.toPrevious) &&
-              event.previousDistance >= 0 && event.unguidedReverse >= 0 && std::isfinite(event.unguidedReverse);
+              event.previousDistance >= 0 && event.unguidedReverse >= 0 && std::isfinite(event.unguidedReverse) &&
+              std::isfinite(event.throughput) && event.survival > 0 && event.survival <= 1;
   const uint64_t pixels = static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_);
   for (size_t i = 0; i < paths.size(); ++i) {
     const uint32_t before = i > 0 ? paths[i - 1].firstEvent : 0;

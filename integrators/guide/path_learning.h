@@ -3,8 +3,8 @@
 //
 // A guide is made of the events seen so far, and tested on the walks of the following passes, which it does
 // not know. It is used only if it would have reduced their variance by more than it costs. The guide changes at samples
-// 1, 2, 4 … only, so that each pass has one density. Records are taken in the order of the samples, so that all is the
-// same for any number of threads.
+// 1, 2, 4 … only, so that each pass has one density. Russian roulette learns with it (path_roulette.h). Records are
+// taken in the order of the samples, so that all is the same for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "integrators/guide/path_records.h"
+#include "integrators/guide/path_roulette.h"
 #include "integrators/guide/pixel_blocks.h"
 
 namespace lampyr {
@@ -39,6 +40,9 @@ class PathLearning {
   void Skip(uint32_t samples) { samples_ = samples; }
   // The guide in use; null: walks are not guided.
   const std::shared_ptr<const PathGuide>& Guide() const { return guide_; }
+  // The Russian roulette of camera paths; null: nothing is known yet. It is learned from the same records, whether a
+  // guide is used or not.
+  const std::shared_ptr<const PathRoulette>& Roulette() const { return roulette_.Roulette(); }
   // True until enough is known; recording takes time.
   bool IsRecording() const { return isRecording_; }
 
@@ -71,7 +75,8 @@ class PathLearning {
   std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null
   std::shared_ptr<const PathGuide> tried_;  // the candidate, or null
   PixelBlocks blocks_;                      // of the recorded paths
-  PathRecords latest_;                      // since the last milestone
+  RouletteLearning roulette_;
+  PathRecords latest_;  // since the last milestone
   // Weighted events of earlier intervals: of camera paths, and of the light paths along them.
   std::vector<PlacedEvent> kept_, keptOfLight_;
 };

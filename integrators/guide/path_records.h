@@ -20,6 +20,9 @@ namespace lampyr {
 // previous vertex. Camera paths therefore teach both walks.
 struct RecordedEvent : PlacedEvent {
   float guidance = 1;  // Guidance::forward
+  // Of the path that arrived: mean of the channels. Probability with which it went on.
+  float throughput = 0, survival = 1;
+  uint32_t raysBefore = 0;  // of the path, up to this vertex
   // Radiance that the path had found when it arrived at the vertex, and when it left it: mean of the channels,
   // W/(m² sr).
   float foundOnArrival = 0, foundBefore = 0;
@@ -33,6 +36,7 @@ struct RecordedPath {
   uint32_t sample = 0;      // index in the pixel
   uint32_t firstEvent = 0;  // the events up to that of the next path are this path's
   float found = 0;          // by the whole walk
+  uint32_t rays = 0;
 };
 
 // The records of one thread's share of a pass.
@@ -43,7 +47,7 @@ class PathRecords {
   void SetFraction(double fraction) { fraction_ = fraction; }
 
   void StartPath(uint32_t pixel, uint32_t sample) {
-    paths_.push_back({pixel, sample, static_cast<uint32_t>(events_.size()), 0});
+    paths_.push_back({pixel, sample, static_cast<uint32_t>(events_.size()), 0, 0});
   }
   // False if the path has kMostEvents events already; later ones are not recorded.
   bool HasRoom() const { return events_.size() - paths_.back().firstEvent < kMostEvents; }
@@ -52,11 +56,11 @@ class PathRecords {
   void SetDistance(float distance) {
     if (events_.size() > paths_.back().firstEvent) events_.back().distance = distance;
   }
-  // Ends the path, which has found the radiance `found`; drops it if that is not finite. The events of a path that
-  // found nothing teach nothing.
-  void EndPath(float found) {
+  // Ends the path, which has found the radiance `found` with so many rays, and drops it if that is not finite.
+  void EndPath(float found, size_t rays) {
     paths_.back().found = found;
-    if (found == 0 || !std::isfinite(found)) events_.resize(paths_.back().firstEvent);
+    paths_.back().rays = static_cast<uint32_t>(rays);
+    if (!std::isfinite(found)) events_.resize(paths_.back().firstEvent);
     if (!std::isfinite(found)) paths_.pop_back();
   }
 

@@ -9,6 +9,30 @@
 
 namespace lampyr {
 
+// Divides an image into blocks of pixels.
+class BlockLayout {
+ public:
+  BlockLayout(int width, int height)
+      : width_(width),
+        size_(std::max((std::max(width, height) + kAcross - 1) / kAcross, kLeastSize)),
+        across_((width + size_ - 1) / size_),
+        count_(static_cast<size_t>(across_) * static_cast<size_t>((height + size_ - 1) / size_)) {}
+
+  size_t Count() const { return count_; }
+  // `pixel`: y · width + x.
+  size_t Of(uint32_t pixel) const {
+    const auto x = static_cast<int>(pixel % static_cast<uint32_t>(width_)),
+               y = static_cast<int>(pixel / static_cast<uint32_t>(width_));
+    return static_cast<size_t>(y / size_) * static_cast<size_t>(across_) + static_cast<size_t>(x / size_);
+  }
+
+ private:
+  static constexpr int kAcross = 32, kLeastSize = 4;  // blocks across the image, and pixels across a block
+
+  int width_, size_, across_;
+  size_t count_;
+};
+
 class PixelBlocks {
  public:
   // Sums over the samples of a block.
@@ -17,19 +41,12 @@ class PixelBlocks {
   };
 
   // The blocks of an image of width × height pixels.
-  PixelBlocks(int width, int height)
-      : width_(width),
-        size_(std::max((std::max(width, height) + kAcross - 1) / kAcross, kLeastSize)),
-        across_((width + size_ - 1) / size_),
-        blocks_(static_cast<size_t>(across_) * static_cast<size_t>((height + size_ - 1) / size_)) {}
+  PixelBlocks(int width, int height) : layout_(width, height), blocks_(layout_.Count()) {}
 
   size_t Count() const { return blocks_.size(); }
   // `pixel`: y · width + x.
-  size_t Of(uint32_t pixel) const {
-    const auto x = static_cast<int>(pixel % static_cast<uint32_t>(width_)),
-               y = static_cast<int>(pixel / static_cast<uint32_t>(width_));
-    return static_cast<size_t>(y / size_) * static_cast<size_t>(across_) + static_cast<size_t>(x / size_);
-  }
+  size_t Of(uint32_t pixel) const { return layout_.Of(pixel); }
+  const BlockLayout& Layout() const { return layout_; }
   // Adds a sample that has found this radiance: mean of the channels, W/(m² sr).
   void Add(uint32_t pixel, double found) {
     Block& block = blocks_[Of(pixel)];
@@ -78,11 +95,10 @@ class PixelBlocks {
   }
 
  private:
-  static constexpr int kAcross = 32, kLeastSize = 4;  // blocks across the image, and pixels across a block
   // Brightness that is added to that of a block, in means of the image: the error of dark parts counts less.
   static constexpr double kDark = 0.1;
 
-  int width_, size_, across_;
+  BlockLayout layout_;
   std::vector<Block> blocks_;
 };
 

@@ -281,7 +281,7 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
                           .wantsBeams = gatherer != nullptr,
                           .records = StartRecord(context)};
   Walk(context, walk, state, path, visitor);
-  if (walk.records) walk.records->EndPath(visitor.Found());
+  if (walk.records) walk.records->EndPath(visitor.Found(), path.Count() + 1);
   return visitor.Radiance();
 }
 

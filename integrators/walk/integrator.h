@@ -124,7 +124,7 @@ struct SampleContext {
   Sampler* lightSampler = nullptr;
   const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none
   PathRecords* records = nullptr;       // receive the camera path for path guiding; null: not wanted
-  uint32_t pixel = 0, sample = 0;       // y · width + x, and index of the sample in it; only with `records`
+  uint32_t pixel = 0, sample = 0;       // y · width + x, and index of the sample in it; of camera paths
   // The lane of a Color whose refraction the paths follow where smooth glass disperses light. SampleLanes traces such a
   // sample once for each lane.
   int lane = 0;

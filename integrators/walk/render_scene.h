@@ -10,6 +10,7 @@
 #include "film/output_plan.h"
 #include "geometry/geometry_scene.h"
 #include "integrators/guide/path_guide.h"
+#include "integrators/guide/path_roulette.h"
 #include "lights/services/lighting_services.h"
 #include "materials/material.h"
 #include "media/medium.h"
@@ -40,6 +41,8 @@ struct RenderScene {
   std::optional<int32_t>
       unbounded;  // medium of points around which only opaque surfaces bound media; set if the camera is such a point
   std::shared_ptr<const PathGuide> guide;  // guide of walks after wide scattering; null: walks are not guided
+  // Russian roulette of camera paths after wide scattering; null: by throughput alone.
+  std::shared_ptr<const PathRoulette> roulette;
   // Light is carried by wavelength: each pass is given the scene at its wavelengths (AtWavelengths), and
   // `wavelengths` is null in the scene from which these are made, whose colours are in Rec. 709.
   bool isSpectral = false;

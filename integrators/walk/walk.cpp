@@ -1,6 +1,7 @@
 #include "integrators/walk/walk.h"
 
 #include <cmath>
+#include <limits>
 #include <new>
 #include <optional>
 #include <type_traits>
@@ -23,6 +24,7 @@ float SurvivalProbability(const Color& throughput, float scale, int depth) {
 }
 
 bool Survives(const SampleContext& context, uint32_t dimension, float survival, PathState& state) {
+  state.lastSurvival = survival;
   if (survival >= 1) return true;
   context.sampler.SetDimension(dimension);
   if (context.sampler.Get1D() >= survival) return false;
@@ -51,6 +53,21 @@ void MakeInPlace(T& value, const Make& make) {
 uint8_t SideOf(const Vertex& vertex) {
   if (vertex.IsInMedium() || !vertex.receiver.HasNormal()) return GuideSideOf(Normal3(0.0f));
   return GuideSideOf(vertex.bsdf.IsTransmissive() ? vertex.point.Ng : vertex.receiver.normal);
+}
+
+// Roulette by what was learned at the place of the vertex, of a camera path. nullopt: nothing was.
+[[gnu::noinline]] std::optional<bool> SurvivesAsLearned(const SampleContext& context, uint32_t dimension,
+                                                        const PathVertex& vertex, PathState& state) {
+  if (vertex.isDelta || !vertex.bsdf.IsWide()) return std::nullopt;
+  // The throughput of the path that arrives, and not of the direction it goes on in: a guide gives directions from
+  // which much light comes a small one.
+  const float survival = context.scene.roulette->Survival(vertex.point.position, SideOf(vertex),
+                                                          vertex.Throughput().Average(), state.perNoise);
+  if (!(survival > 0)) return std::nullopt;
+  if (!Survives(context, dimension, survival, state)) return false;
+  state.emitted = std::max(state.Throughput().Max(), std::numeric_limits<float>::min());
+  state.etaScale = state.guidance = 1;
+  return true;
 }
 
 void SetGuide(const RenderScene& scene, Vertex& vertex) {
@@ -203,6 +220,11 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   if (mayEnd)
     return Continues(context, settings.dimensions.Of(block, dimensions::kRoulette), settings.continuing, state);
   if (!settings.hasRoulette) return true;
+  if (context.scene.roulette && !isFromLight) {
+    if (const auto survives =
+            SurvivesAsLearned(context, settings.dimensions.Of(block, dimensions::kRoulette), vertex, state))
+      return *survives;
+  }
   const Color carried = isFromLight ? state.diffuse : state.Throughput();
   // The throughput that the path would have without a guide: guided paths have a small throughput where much light is
   // expected.
@@ -251,6 +273,9 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
   event.direction = state.ray.direction;
   event.side = SideOf(vertex);
   event.guidance = state.lastGuidance.forward;
+  event.throughput = vertex.Throughput().Average();
+  event.survival = state.lastSurvival;
+  event.raysBefore = static_cast<uint32_t>(path.Count());
   if (!vertex.scatteredDelta) {
     event.unguided = static_cast<float>(vertex.eventForward.value) / state.lastGuidance.forward;
     event.unguidedReverse = static_cast<float>(vertex.eventReverse.value) / state.lastGuidance.reverse;
@@ -311,6 +336,8 @@ inline void Append(const SampleContext& context, TransportMode mode, const PathS
 void Walk(const SampleContext& context, const WalkSettings& settings, PathState& state, Subpath& path,
           PathVisitor& visitor) {
   bool isRecorded = false;  // the last event
+  if (context.scene.roulette && settings.mode == TransportMode::Radiance)
+    state.perNoise = context.scene.roulette->PerNoise(context.pixel);
   const GeometryScene& geometry = *context.scene.geometry;
   const bool hasMedia = !context.scene.media.empty();
   std::optional<Flight> flight;  // in scenes with media

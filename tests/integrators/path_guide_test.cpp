@@ -384,7 +384,7 @@ struct EvenLight {
       event.foundBefore = static_cast<float>(i);
       records.Add(event);
     }
-    records.EndPath(2 + rng.NextFloat());
+    records.EndPath(2 + rng.NextFloat(), 3);
   }
 };
 
