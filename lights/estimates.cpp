@@ -6,18 +6,23 @@ namespace {
 
 constexpr float kSmallestCosine = 1e-3f;
 
+// The bounds of nearly all surfaces have a cosine of 1 or 0.
+float AngleOf(float cosine) {
+  if (cosine >= 1) return 0;
+  return cosine == 0 ? 0.5f * kPi : std::acos(std::max(cosine, -1.0f));
+}
+
 // An upper bound of the cosine that any normal of the emitter makes with the way to a point, or to points no nearer; 0
 // when all normals face away. `axisCosine`: of the way from the box's middle with the axis.
 float BoundCosine(const EmissionBounds& bounds, float axisCosine, float distanceSquared, float radiusSquared) {
   if (distanceSquared <= radiusSquared || bounds.cosThetaO <= -1) return 1;
   const float cosine = bounds.twoSided ? std::abs(axisCosine) : axisCosine;
   const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f));
-  const float spread = std::acos(std::clamp(bounds.cosThetaO, -1.0f, 1.0f)) +
-                       std::asin(std::sqrt(std::min(radiusSquared / distanceSquared, 1.0f)));
+  const float spread =
+      AngleOf(bounds.cosThetaO) + std::asin(std::sqrt(std::min(radiusSquared / distanceSquared, 1.0f)));
   // A little slack for the rounding of the three angles.
   const float least = std::max(0.0f, angle - spread - 1e-3f);
-  return least < std::acos(std::clamp(bounds.cosThetaE, -1.0f, 1.0f)) ? std::max(std::cos(least), kSmallestCosine)
-                                                                      : 0.0f;
+  return least < AngleOf(bounds.cosThetaE) ? std::max(std::cos(least), kSmallestCosine) : 0.0f;
 }
 
 // Irradiance at a distance from the middle of the box, with the bound of the cosine.
@@ -64,8 +69,8 @@ std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& boun
   SegmentEstimate estimate{0, 0, length};
   if (!bounds.twoSided && bounds.cosThetaO > 0.999999f) {
     // Flat: the plane through the box's lowest corner, lowered by what normals within θo may tilt it and by rounding.
-    float height = kInfinity;
-    for (int i = 0; i < 8; ++i) height = std::min(height, glm::dot(bounds.axis, bounds.box.Corner(i)));
+    const Vector3 diagonal = bounds.box.Diagonal(), steep = Abs(Vector3(bounds.axis));
+    float height = glm::dot(bounds.axis, bounds.box.Center()) - 0.5f * glm::dot(steep, diagonal);
     height -= 2e-3f * glm::length(bounds.box.Diagonal()) + 1e-5f * (std::abs(height) + MaxAbsComponent(origin));
     if (!ClipToFront(origin, direction, height, bounds.axis, estimate.minT, estimate.maxT)) return std::nullopt;
   }

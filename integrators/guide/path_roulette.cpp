@@ -11,14 +11,14 @@ namespace lampyr {
 
 namespace {
 
-constexpr size_t kMostInRegion = 400;  // events of a region before it is divided
-constexpr size_t kFewestInRegion = 16;
+constexpr size_t kMostOfRegion = 400;  // events of a region before it is divided
+constexpr size_t kFewestOfRegion = 16;
 // Events kept, and paths of which events are added at a time.
-constexpr size_t kMostEvents = size_t{1} << 16;
+constexpr size_t kMostRouletteEvents = size_t{1} << 16;
 // Factor on the probability. With 1 paths are longer than is best, because samples are better distributed than the
 // independent ones that V is estimated by. 1 / (relMSE × rays) of `path` with 0.5, 0.7, 1, over that with 1, in a
 // Cornell box: 0.77, 1.02, 1; scenes/gallery: 1.10, 1.06, 1; still-life: 1.05, 1.02, 1; ring: 1.01, 1, 1.
-constexpr double kFactor = 0.7;
+constexpr double kRouletteFactor = 0.7;
 // Part of the paths whose contributions are limited to that of the next one below them: a few bright samples are not
 // the noise of the whole picture.
 constexpr double kOutliers = 1.0 / 200;
@@ -26,7 +26,7 @@ constexpr double kOutliers = 1.0 / 200;
 constexpr double kRaysOfSample = 2;
 
 // √(C_I / V): of what paths find beyond their first event. Direct light there is found alike by all paths.
-double PerNoise(const PathRecords& paths, const BlockLayout& layout, const std::vector<double>& scales) {
+double PerNoiseOf(const PathRecords& paths, const BlockLayout& layout, const std::vector<double>& scales) {
   struct Sums {
     double count = 0, found = 0, squares = 0;
   };
@@ -60,7 +60,7 @@ double PerNoise(const PathRecords& paths, const BlockLayout& layout, const std::
   return variance > 0 ? std::sqrt(rays / variance) : 0.0;
 }
 
-bool IsFraction(double value) {
+bool IsFiniteFactor(double value) {
   return value >= 0 && std::isfinite(value);
 }
 
@@ -79,8 +79,8 @@ std::shared_ptr<const PathRoulette> PathRoulette::Load(const BlockLayout& layout
   if (isSound) {
     loaded->ofRegion_ = bytes.List<double>(RegionTree::kMostRegions);
     isSound = loaded->regions_.IsOf(loaded->ofRegion_.size()) &&
-              std::all_of(loaded->ofBlock_.begin(), loaded->ofBlock_.end(), IsFraction) &&
-              std::all_of(loaded->ofRegion_.begin(), loaded->ofRegion_.end(), IsFraction);
+              std::all_of(loaded->ofBlock_.begin(), loaded->ofBlock_.end(), IsFiniteFactor) &&
+              std::all_of(loaded->ofRegion_.begin(), loaded->ofRegion_.end(), IsFiniteFactor);
   }
   if (!isSound) throw Error("it holds a roulette that cannot be");
   return loaded;
@@ -105,17 +105,17 @@ void RouletteLearning::Add(const PathRecords& paths) {
     size_t i = 0;
     std::erase_if(events, [&](const Event&) { return MixBits(i++) % every != 0; });
   };
-  thin(latest, kMostEvents / 2);
+  thin(latest, kMostRouletteEvents / 2);
   events_.insert(events_.end(), latest.begin(), latest.end());
-  thin(events_, kMostEvents);
+  thin(events_, kMostRouletteEvents);
 }
 
 void RouletteLearning::Learn(const PathRecords& paths, const std::vector<double>& scales) {
   Add(paths);
-  const double perNoise = PerNoise(paths, layout_, scales);
+  const double perNoise = PerNoiseOf(paths, layout_, scales);
   if (!(perNoise > 0) || !std::isfinite(perNoise)) return;
   std::shared_ptr<PathRoulette> made(new PathRoulette(layout_));
-  for (const double scale : scales) made->ofBlock_.push_back(kFactor * perNoise * scale);
+  for (const double scale : scales) made->ofBlock_.push_back(kRouletteFactor * perNoise * scale);
   std::vector<RegionPoint> points;
   points.reserve(events_.size());
   for (size_t i = 0; i < events_.size(); ++i)
@@ -130,14 +130,14 @@ void RouletteLearning::Learn(const PathRecords& paths, const std::vector<double>
     return rays > 0 ? std::sqrt(squares / rays) : 0.0;
   };
   const double ofAll = valueOf(events_);
-  made->regions_ = RegionTree(points, kMostInRegion, [&](std::span<const RegionPoint> part) {
+  made->regions_ = RegionTree(points, kMostOfRegion, [&](std::span<const RegionPoint> part) {
     std::vector<Event> events;
     for (const RegionPoint& point : part) events.push_back(events_[point.index]);
     // A region with few events is taken for one like all.
-    made->ofRegion_.push_back(events.size() < kFewestInRegion ? ofAll : valueOf(events));
+    made->ofRegion_.push_back(events.size() < kFewestOfRegion ? ofAll : valueOf(events));
   });
-  const bool isFinite = std::all_of(made->ofBlock_.begin(), made->ofBlock_.end(), IsFraction) &&
-                        std::all_of(made->ofRegion_.begin(), made->ofRegion_.end(), IsFraction);
+  const bool isFinite = std::all_of(made->ofBlock_.begin(), made->ofBlock_.end(), IsFiniteFactor) &&
+                        std::all_of(made->ofRegion_.begin(), made->ofRegion_.end(), IsFiniteFactor);
   if (isFinite) roulette_ = made;
 }
 
@@ -149,7 +149,7 @@ void RouletteLearning::Save(ByteWriter& bytes) const {
 
 void RouletteLearning::Load(ByteReader& bytes) {
   if (bytes.Flag()) roulette_ = PathRoulette::Load(layout_, bytes);
-  events_ = bytes.List<Event>(kMostEvents);
+  events_ = bytes.List<Event>(kMostRouletteEvents);
   for (const Event& event : events_) {
     if (!(IsFinite(event.position) && std::isfinite(event.found) && event.found >= 0 && std::isfinite(event.rays) &&
           event.rays >= 0 && std::isfinite(event.weight) && event.weight >= 1 && event.side < kGuideSides))

@@ -73,7 +73,9 @@ inline const Setting kLearnAlways{.name = "learn-always",
                                   .help = "Choose lights by what is learned from the start, whether it pays or not",
                                   .fallback = false};
 inline const Setting kGuidePaths{
-    .name = "guide-paths", .help = "Guide paths to where they find light, if that reduces the noise", .fallback = true};
+    .name = "guide-paths",
+    .help = "Learn where paths find light: guide them there, if that reduces the noise, and end those that find little",
+    .fallback = true};
 inline const Setting kGuideAlways{.name = "guide-always",
                                   .help = "Guide paths as soon as anything is learned, whether it pays or not",
                                   .fallback = false};

@@ -46,6 +46,7 @@ class PatchLight final : public LightBase {
     BuildTable();
     wholePower_ = PowerOfAll(built_, exitance_);
     wholeBounds_ = BoundsOfAll(built_);
+    KeepPatches();
   }
 
   LightKind Kind() const override { return LightKind::Area; }
@@ -115,6 +116,7 @@ class PatchLight final : public LightBase {
   // False if nothing can be sampled.
   bool SamplePoint(const LightContext& context, EmittingPoint& point) const;
   void BuildTable();
+  void KeepPatches();
   double TotalArea(const LightTransform& transform) const;
   MappedArea MapArea() const;
   // `exitance`: called as an ExitanceTable is.
@@ -128,6 +130,7 @@ class PatchLight final : public LightBase {
   // The emission bounds without the energy.
   EmissionBounds ReachFor(const LightContext& context) const;
   EmissionBounds MovedBounds(const LightContext& context) const;
+  EmissionBounds BoundsOfOne(uint32_t patch, const LightTransform& transform) const;
 
   Patches patches_;
   LightTransform built_;
@@ -139,7 +142,21 @@ class PatchLight final : public LightBase {
   AliasTable table_;
   Color wholePower_;
   EmissionBounds wholeBounds_;
+  // Of each patch as built, for estimates, which are asked for at every vertex of a path; empty: there are too many.
+  struct Kept {
+    EmissionBounds bounds;
+    double area = 0;
+  };
+  static constexpr uint32_t kMostKept = 4096;
+  std::vector<Kept> kept_;
 };
+
+template <class Patches>
+void PatchLight<Patches>::KeepPatches() {
+  if (patches_.Count() > kMostKept) return;
+  const glm::dmat3 linear(built_.toRender.linear);
+  for (uint32_t i = 0; i < patches_.Count(); ++i) kept_.push_back({BoundsOfOne(i, built_), patches_.Area(i, linear)});
+}
 
 template <class Patches>
 bool PatchLight<Patches>::SamplePoint(const LightContext& context, EmittingPoint& point) const {
@@ -264,7 +281,8 @@ float PatchLight<Patches>::UnshapedPowerFor(const LightContext& context) const {
   if (context.patch != kAnyPatch) {
     const auto patch = static_cast<uint32_t>(context.patch);
     if (patch >= patches_.Count()) return 0;
-    area = patches_.Area(patch, glm::dmat3(now.toRender.linear));
+    area = !kept_.empty() && IsAsBuilt(context) ? kept_[patch].area
+                                                : patches_.Area(patch, glm::dmat3(now.toRender.linear));
   } else if (!IsAsBuilt(context)) {
     const auto scaleSquared = RelativeScaleSquared(built_, now);
     area = scaleSquared ? builtArea_ * static_cast<double>(*scaleSquared)
@@ -318,13 +336,19 @@ EmissionBounds PatchLight<Patches>::MovedBounds(const LightContext& context) con
 }
 
 template <class Patches>
+EmissionBounds PatchLight<Patches>::BoundsOfOne(uint32_t patch, const LightTransform& transform) const {
+  if (!patches_.CanBeSampled(patch)) return EmissionBounds{};
+  EmissionBounds bounds = patches_.Bounds(patch, transform);
+  bounds.twoSided = bounds.twoSided || emission_.IsTwoSided();
+  return bounds;
+}
+
+template <class Patches>
 EmissionBounds PatchLight<Patches>::ReachFor(const LightContext& context) const {
   const auto patch = static_cast<uint32_t>(context.patch);
   if (context.patch != kAnyPatch) {
-    if (patch >= patches_.Count() || !patches_.CanBeSampled(patch)) return EmissionBounds{};
-    EmissionBounds bounds = patches_.Bounds(patch, *context.transform);
-    bounds.twoSided = bounds.twoSided || emission_.IsTwoSided();
-    return bounds;
+    if (patch >= patches_.Count()) return EmissionBounds{};
+    return !kept_.empty() && IsAsBuilt(context) ? kept_[patch].bounds : BoundsOfOne(patch, *context.transform);
   }
   return IsAsBuilt(context) ? wholeBounds_ : MovedBounds(context);
 }

@@ -13,7 +13,7 @@ namespace lampyr::test {
 namespace {
 
 constexpr uint8_t kUp = 4;
-constexpr int kSize = 32;
+constexpr int kPixelsAcross = 32;
 
 // Paths with two events each. The first is on the side `kUp`, at x below 0 or above, with a throughput of 1; the second
 // one has no region of its own. Beyond the first event a path finds `left` or `right` times an exponential random
@@ -24,7 +24,7 @@ PathRecords PathsThatFind(float left, float right, float survival) {
   for (uint32_t i = 0; i < 20000; ++i) {
     const float x = 2 * rng.NextFloat() - 1;
     const float found = -std::log(1 - rng.NextFloat()) * (x < 0 ? left : right);
-    records.StartPath(i % (kSize * kSize), i / (kSize * kSize));
+    records.StartPath(i % (kPixelsAcross * kPixelsAcross), i / (kPixelsAcross * kPixelsAcross));
     RecordedEvent event;
     event.position = Point3(x, rng.NextFloat(), 0);
     event.side = kUp;
@@ -39,7 +39,7 @@ PathRecords PathsThatFind(float left, float right, float survival) {
 }
 
 std::shared_ptr<const PathRoulette> RouletteOf(const PathRecords& records, double scale) {
-  const BlockLayout layout(kSize, kSize);
+  const BlockLayout layout(kPixelsAcross, kPixelsAcross);
   RouletteLearning learning(layout);
   learning.Learn(records, std::vector<double>(layout.Count(), scale));
   return learning.Roulette();
@@ -103,7 +103,7 @@ std::vector<std::byte> BytesOf(const RouletteLearning& learning) {
 
 // Whatever the bytes are, a roulette is refused or sound.
 TEST(PathRoulette, IsSavedAndDamagedOnesAreRefused) {
-  const BlockLayout layout(kSize, kSize);
+  const BlockLayout layout(kPixelsAcross, kPixelsAcross);
   RouletteLearning learning(layout);
   learning.Learn(PathsThatFind(1, 4, 1), std::vector<double>(layout.Count(), 1));
   const std::vector<std::byte> bytes = BytesOf(learning);
@@ -139,7 +139,7 @@ TEST(PathRoulette, IsSavedAndDamagedOnesAreRefused) {
 }
 
 // A closed box of gray walls with a lamp at its ceiling and a mirror in it: most of the noise is that of long paths.
-std::string Box() {
+std::string ClosedBox() {
   const std::string wall = "Shape \"bilinearmesh\" \"point3 P\" ";
   return "Film \"rgb\" \"integer xresolution\" 48 \"integer yresolution\" 32\nPixelFilter \"box\"\n"
          "Integrator \"path\" \"integer maxdepth\" 20\nLookAt 0 0 0.9  0 0 -1  0 1 0\nCamera \"perspective\" \"float "
@@ -162,7 +162,7 @@ TEST(PathRoulette, LowersTheErrorByMoreThanItCosts) {
       RenderOverrides overrides;
       overrides.values["guide-paths"] = learns;
       overrides.seed = seed;
-      const Rendered render = RenderText(Box(), 128, overrides, 2);
+      const Rendered render = RenderText(ClosedBox(), 128, overrides, 2);
       const MeanValue value = MeanOf(render.image);
       mean += value.mean;
       variance += value.standardError * value.standardError;
