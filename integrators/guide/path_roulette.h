@@ -6,7 +6,7 @@
 // where M is the second moment of what paths find beyond an event there, per unit of throughput, C the rays that this
 // takes, V the variance of a pixel's samples and C_I the rays of a sample. β and V are relative to the brightness of
 // the part of the picture. So paths are not ended because they are long, but where what they may still find is small
-// against the noise of the pixel.
+// against the noise of the pixel. The walk raises q where a survivor would carry more than a path that nothing ends.
 #pragma once
 
 #include <memory>

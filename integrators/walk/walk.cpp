@@ -38,6 +38,7 @@ bool Continues(const SampleContext& context, uint32_t dimension, float probabili
   if (!Survives(context, dimension, probability, state)) return false;
   state.pdfDirection = static_cast<double>(probability) * state.pdfDirection;
   state.emitted /= probability;
+  state.most /= probability;
   return true;
 }
 
@@ -61,12 +62,14 @@ uint8_t SideOf(const Vertex& vertex) {
   if (vertex.isDelta || !vertex.bsdf.IsWide()) return std::nullopt;
   // The throughput of the path that arrives, and not of the direction it goes on in: a guide gives directions from
   // which much light comes a small one.
-  const float survival = context.scene.roulette->Survival(vertex.point.position, SideOf(vertex),
-                                                          vertex.Throughput().Average(), state.perNoise);
-  if (!(survival > 0)) return std::nullopt;
+  const float learned = context.scene.roulette->Survival(vertex.point.position, SideOf(vertex),
+                                                         vertex.Throughput().Average(), state.perNoise);
+  if (!(learned > 0)) return std::nullopt;
+  // No path carries more than one that nothing ends: light of which nothing was known is not found as a bright dot.
+  const float scale = state.etaScale * state.guidance;
+  const float survival = std::min(std::max(learned, state.Throughput().Max() * scale / state.most), 1.0f);
   if (!Survives(context, dimension, survival, state)) return false;
-  state.emitted = std::max(state.Throughput().Max(), std::numeric_limits<float>::min());
-  state.etaScale = state.guidance = 1;
+  state.emitted = std::max(state.Throughput().Max() * scale, std::numeric_limits<float>::min());
   return true;
 }
 

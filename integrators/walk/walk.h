@@ -30,16 +30,16 @@ struct PathState {
   EdgeFactors factors;  // of the last ray, by participating media
   float length = 0;     // of the whole path so far
   float etaScale = 1;   // undoes the scaling of radiance by η² in refraction, for Russian roulette
-  // Π Guidance::forward over the path's events since `emitted`, for Russian roulette; and the factor of the last event.
+  // Π Guidance::forward over the path's events, for Russian roulette; and the factor of the last event.
   float guidance = 1;
   Guidance lastGuidance;
   float lastSurvival = 1;           // probability with which the path went on after its last event
   double perNoise = 0;              // PathRoulette::PerNoise of a camera path with a roulette
   bool isDispersed = false;         // only one lane is left (SampleContext::lane)
   bool hasScatteredWidely = false;  // an earlier vertex scattered by a lobe that is no delta
-  // Throughput to which Russian roulette compares: the initial one, or that after the last event for which the roulette
-  // was learned.
-  float emitted = 1;
+  // Throughputs without the scaling by refraction and guides. That to which Russian roulette compares: the initial one,
+  // or that after the last event for which the roulette was learned. The largest that a camera path may have.
+  float emitted = 1, most = 1;
   ScatteringParts event;  // at the last vertex; only with SampleContext::outputs
 
   Color Throughput() const { return diffuse + specular; }
