@@ -332,9 +332,8 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     } else {
       PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       context.film = ray.film;
-      if (pass_.learning || pass_.selection)
-        pass_.Record(x, y, pass_.allocation ? slots.number : index, pass_.learning ? &records_[chunk] : nullptr,
-                     pass_.selection ? &tested_[chunk] : nullptr, context);
+      pass_.Record(x, y, pass_.allocation ? slots.number : index, pass_.learning ? &records_[chunk] : nullptr,
+                   pass_.selection ? &tested_[chunk] : nullptr, context);
       context.mergeBias = adder.StartBias();
       adder.StartLayers();
       const Color radiance = edges.Radiance(x, y, slots.number, context, ray);

@@ -24,7 +24,7 @@ namespace lampyr {
 class AtomicFile;
 
 // The end of a file with a state. The last character is the version of the layout.
-inline constexpr std::string_view kPartMark = "lampyr part5";
+inline constexpr std::string_view kPartMark = "lampyr part6";
 
 // All that the samples depend on, as pairs of name and value: scene, files, settings, version. Threads, passes and
 // shards do not affect the samples and are not included.

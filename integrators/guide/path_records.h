@@ -60,8 +60,9 @@ class PathRecords {
   void EndPath(float found, size_t rays) {
     paths_.back().found = found;
     paths_.back().rays = static_cast<uint32_t>(rays);
-    if (!std::isfinite(found)) events_.resize(paths_.back().firstEvent);
-    if (!std::isfinite(found)) paths_.pop_back();
+    if (std::isfinite(found)) return;
+    events_.resize(paths_.back().firstEvent);
+    paths_.pop_back();
   }
 
   void Clear() {

@@ -65,6 +65,7 @@ uint8_t SideOf(const Vertex& vertex) {
   const float learned = context.scene.roulette->Survival(vertex.point.position, SideOf(vertex),
                                                          vertex.Throughput().Average(), state.perNoise);
   if (!(learned > 0)) return std::nullopt;
+  if (!(state.Throughput().Max() > 0)) return false;  // nothing can be found any more
   // No path carries more than one that nothing ends: light of which nothing was known is not found as a bright dot.
   const float scale = state.etaScale * state.guidance;
   const float survival = std::min(std::max(learned, state.Throughput().Max() * scale / state.most), 1.0f);

@@ -154,7 +154,8 @@ TEST(PhotonGuiding, TheSameForAnyThreadsAndPasses) {
 TEST(PhotonGuiding, NothingIsAimedWhereEverythingIsOfUse) {
   const auto render = [](bool guides) {
     RenderOverrides overrides = Small("vcm", guides);
-    overrides.values["connect"] = false;  // with connections it would not be tried, since nothing is smooth
+    overrides.values["connect"] = false;      // with connections it would not be tried, since nothing is smooth
+    overrides.values["guide-paths"] = false;  // paths are recorded when that is settled
     return RenderText(kBox, 32, overrides);
   };
   const Rendered with = render(true), without = render(false);

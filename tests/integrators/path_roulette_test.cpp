@@ -176,5 +176,45 @@ TEST(PathRoulette, LowersTheErrorByMoreThanItCosts) {
       << learnedVariance / plainVariance << " " << learnedRays / plainRays;
 }
 
+// Rays of a box with a black panel before the camera, in the left or the right upper corner of the picture.
+double RaysWithPanel(const char* integrator, double left) {
+  const auto x = [left](double at) { return std::to_string(left * at) + " "; };
+  std::string text = ClosedBox();
+  text.resize(text.find("AttributeBegin"));
+  text +=
+      "LightSource \"point\" \"point3 from\" [0 0.7 0]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [" +
+      x(-0.4) + "0.15 0.5  " + x(-0.15) + "0.15 0.5  " + x(-0.4) + "0.25 0.5  " + x(-0.15) + "0.25 0.5]\n";
+  RenderOverrides overrides;
+  overrides.integrator = integrator;
+  return static_cast<double>(RenderText(text, 96, overrides, 2).outcome.counts.Rays());
+}
+
+// The roulette is that of the pixel, also when nothing is recorded any more: one of another pixel would be that of the
+// panel for all the picture, or not.
+TEST(PathRoulette, IsThatOfThePixel) {
+  for (const char* integrator : {"path", "bdpt", "vcm"}) {
+    const double left = RaysWithPanel(integrator, 1), right = RaysWithPanel(integrator, -1);
+    EXPECT_NEAR(left / right, 1, 0.03) << integrator;
+  }
+}
+
+// A path that has become black ends there.
+TEST(PathRoulette, BlackPathsEnd) {
+  const std::string wall = "Shape \"bilinearmesh\" \"point3 P\" ";
+  const std::string text =
+      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nPixelFilter \"box\"\n"
+      "Integrator \"path\" \"integer maxdepth\" 20\nLookAt 0 0 0.9  0 0 -1  0 1 0\nCamera \"perspective\" \"float "
+      "fov\" 60\nWorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0.8 0]\n" +
+      wall + "[-1 -1 1  1 -1 1  -1 1 1  1 1 1]\n" + wall + "[-1 -1 -1  -1 -1 1  -1 1 -1  -1 1 1]\n" + wall +
+      "[1 -1 -1  1 -1 1  1 1 -1  1 1 1]\nMaterial \"diffuse\" \"rgb reflectance\" [0.8 0 0]\n" + wall +
+      "[-1 -1 -1  1 -1 -1  -1 1 -1  1 1 -1]\n" + wall + "[-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]\n" + wall +
+      "[-1 1 -1  1 1 -1  -1 1 1  1 1 1]\n"
+      "LightSource \"point\" \"point3 from\" [0.2 0.6 0.1]\n";
+  // Shadow rays are traced where any light is left.
+  const RenderCounts counts = RenderText(text, 64, {}, 2).outcome.counts;
+  EXPECT_LT(counts.indirectRays, counts.shadowRays);
+}
+
 }  // namespace
 }  // namespace lampyr::test

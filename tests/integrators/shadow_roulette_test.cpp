@@ -31,6 +31,7 @@ Rendered RenderWith(const char* integrator, double roulette, double threshold) {
   overrides.integrator = integrator;
   overrides.values["shadow-roulette"] = roulette;
   overrides.values["shadow-threshold"] = threshold;
+  overrides.values["guide-paths"] = false;  // what paths learn depends on what they find
   return RenderText(kScene, 64, overrides);
 }
 
