@@ -226,7 +226,7 @@ TEST_P(LightGroupLayers, AreTheSameForAnyThreadsAndPasses) {
 
 TEST_P(LightGroupLayers, OfACropAreThoseOfThePicture) {
   RenderOverrides overrides = With(GetParam());
-  overrides.values["guide-photons"] = false;  // they would be aimed at the crop
+  overrides.values["guide-photons"] = overrides.values["guide-paths"] = false;  // they learn from what the crop sees
   const Image whole = RenderText(WithGroups(), 4, overrides).image;
   overrides.crop = "5,18,3,17";
   const Image crop = RenderText(WithGroups(), 4, overrides).image;
