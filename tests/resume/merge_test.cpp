@@ -68,7 +68,7 @@ TEST_F(Merge, LayersOfTheFirstHitAreKept) {
   std::string text = kScene;
   text.replace(text.find("\"rgb\""), 5, "\"gbuffer\"");
   WriteBytes(folder_ / "scene.pbrt", text);
-  ExpectWhole("--spp 8 --integrator path", 2);
+  ExpectWhole("--spp 8 --integrator path --no-guide-paths", 2);
   ExpectWhole("--spp 8 --integrator light", 3);
   EXPECT_GE(ReadImage(folder_ / "merged.exr").ChannelIndex("Ns.X"), 0);
 }
@@ -78,7 +78,7 @@ TEST_F(Merge, ManyObjectsAreNamed) {
   std::string text = kScene;
   for (int i = 0; i < 2500; ++i) text += "Shape \"sphere\" \"float radius\" 1e-3\n";
   WriteBytes(folder_ / "scene.pbrt", text);
-  ExpectWhole("--spp 2 --integrator path --layer \"crypto object\"", 2);
+  ExpectWhole("--spp 2 --integrator path --no-guide-paths --layer \"crypto object\"", 2);
 }
 
 TEST_F(Merge, LayersOfWhatWasDecidedAreKept) {
@@ -99,7 +99,7 @@ TEST_F(Merge, HalvesStayHalves) {
   std::string text = kScene;
   text.replace(text.find("\"rgb\""), 5, "\"rgb\" \"bool savefp16\" true");
   WriteBytes(folder_ / "scene.pbrt", text);
-  ExpectWhole("--spp 4", 2);
+  ExpectWhole("--spp 4 --no-guide-paths", 2);
 }
 
 TEST_F(Merge, AMergedPictureIsOneAndAPartCanBeLookedAt) {
@@ -190,10 +190,10 @@ TEST_F(Merge, PartsWithFewerSamplesThanWantedAreNotWhole) {
 }
 
 TEST_F(Merge, PartsCanBeGoneOnWith) {
-  Do("render scene.pbrt --quiet -o whole.exr --spp 40");
+  Do("render scene.pbrt --quiet -o whole.exr --spp 40 --no-guide-paths");
   for (const char* part : {"1", "2"}) {
-    const std::string shard = std::string("render scene.pbrt --quiet --spp 40 --shard ") + part + "/2 -o p" + part +
-                              ".exr --resume --checkpoint 0.01s";
+    const std::string shard = std::string("render scene.pbrt --quiet --spp 40 --no-guide-paths --shard ") + part +
+                              "/2 -o p" + part + ".exr --resume --checkpoint 0.01s";
     LampyrProcess render(folder_.Path(), shard);
     usleep(150000);
     render.Kill(SIGKILL);
