@@ -20,7 +20,7 @@ namespace lampyr {
 // previous vertex. Camera paths therefore teach both walks.
 struct RecordedEvent : PlacedEvent {
   float guidance = 1;  // Guidance::forward
-  // Of the path that arrived: mean of the channels. Probability with which it went on.
+  // Throughput of the path that arrived (mean of the channels), and the probability with which it went on.
   float throughput = 0, survival = 1;
   uint32_t raysBefore = 0;  // of the path, up to this vertex
   // Radiance that the path had found when it arrived at the vertex, and when it left it: mean of the channels,

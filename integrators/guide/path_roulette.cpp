@@ -91,7 +91,7 @@ void RouletteLearning::Add(const PathRecords& paths) {
   for (size_t i = 0; i < paths.Paths().size(); ++i) {
     const RecordedPath& path = paths.Paths()[i];
     for (const RecordedEvent& event : paths.EventsOf(i)) {
-      // What the path would have found without this roulette, times what it would have had to be weighted by.
+      // Radiance found beyond the event per unit of throughput, without the factor 1 / survival.
       const float found = (path.found - event.foundBefore) * event.survival / event.throughput;
       if (!std::isfinite(found) || found < 0) continue;
       latest.push_back({event.position, found, static_cast<float>(path.rays - std::min(path.rays, event.raysBefore)),

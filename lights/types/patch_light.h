@@ -142,7 +142,7 @@ class PatchLight final : public LightBase {
   AliasTable table_;
   Color wholePower_;
   EmissionBounds wholeBounds_;
-  // Of each patch as built, for estimates, which are asked for at every vertex of a path; empty: there are too many.
+  // Bounds and area of each patch as built: estimates need them at every vertex of a path. Empty: too many patches.
   struct Kept {
     EmissionBounds bounds;
     double area = 0;
