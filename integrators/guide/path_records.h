@@ -36,7 +36,7 @@ struct RecordedPath {
   uint32_t sample = 0;      // index in the pixel
   uint32_t firstEvent = 0;  // the events up to that of the next path are this path's
   float found = 0;          // by the whole walk
-  uint32_t rays = 0;
+  uint32_t rays = 0;        // by the whole walk
 };
 
 // The records of one thread's share of a pass.
