@@ -88,8 +88,8 @@ TEST(MixtureFit, FindsTargetsAndTheirShare) {
   const std::vector<GuideEvent> events = EventsOfTargets(target, direction);
   const Point3 center(0.5f, 0.5f, 0);
   const MixtureFit fit = FitMixture(events, center);
-  // Three quarters of the events are not scattering's own, of which the guide has 0.7.
-  EXPECT_NEAR(fit.share, 0.7 * 0.75, 0.02);
+  // Three quarters of the events are not scattering's own, of which the guide has 0.85.
+  EXPECT_NEAR(fit.share, 0.85 * 0.75, 0.02);
   double near = 0, far = 0;
   for (size_t i = 0; i < DirectionMixture::kLobes; ++i) {
     const Point3 at(fit.mixture.x[i], fit.mixture.y[i], fit.mixture.z[i]);
