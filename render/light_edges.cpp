@@ -338,8 +338,7 @@ class EdgeSearch {
 std::unique_ptr<const LightEdges> LightEdges::Find(const RenderScene& scene, const Integrator& integrator,
                                                    const RenderSettings& settings, const PixelRect& crop, int threads) {
   if (!integrator.SeparatesSeenLight()) return nullptr;
-  if (!settings.SamplesLightEdges() || settings.sensor.Limits()) return nullptr;
-  if (PixelFilter(settings.filter).SquaredWeight() != 1) return nullptr;
+  if (!settings.SamplesLightEdges()) return nullptr;
   if (!scene.lighting->HasLightThatCanBeHit() && scene.lighting->InfiniteCount() == 0) return nullptr;
   EdgeSearch search(scene, integrator, settings, crop, threads);
   if (!search.Run()) return nullptr;

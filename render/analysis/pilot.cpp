@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "integrators/guide/path_learning.h"
 #include "integrators/photon/emission_learning.h"
 #include "render/analysis/candidate_masks.h"
 #include "render/analysis/pilot_passes.h"
@@ -28,6 +29,10 @@ constexpr double kPassesTime = 80e6;
 constexpr int kFewestPasses = 4;
 // Passes end where the standard error of the best candidate's error is no larger than this part of it.
 constexpr double kWellKnown = 0.05;
+// Passes of which guides and the roulette of camera paths are learned, fewer if they take so many rays. Their samples
+// are none of the recorded ones.
+constexpr uint32_t kLearningPasses = 4, kFirstLearningPass = 256;
+constexpr uint64_t kLearningRays = 200000;
 // Lights that are chosen at a vertex at most; the pilot decides between them and one.
 constexpr int kSeveralLights = 2;
 
@@ -98,6 +103,29 @@ struct PilotIntegrators {
 RenderScene WithWavelengths(const RenderScene& scene) {
   return scene.isSpectral ? scene.AtWavelengths(std::make_shared<const Wavelengths>(Wavelengths::OfPass(0, kSeed)), {})
                           : scene;
+}
+
+// Sets what a render learns from its camera paths: their guide, if `mayGuide`, and their Russian roulette. Both change
+// the error and the cost of integrators, those of path most. `combined`: the settings with all techniques.
+void LearnPaths(const PilotIntegrators& integrators, const RenderSettings& combined, const Grid& grid, int threads,
+                bool mayGuide, RenderScene& view) {
+  if (!combined.GuidesPaths()) return;
+  PathLearning learning(grid.width, grid.height, static_cast<size_t>(grid.Pixels()), true,
+                        combined.AlwaysGuidesPaths());
+  uint64_t rays = 0;
+  for (uint32_t pass = 0; pass < kLearningPasses && rays < kLearningRays; ++pass) {
+    std::vector<PathRecords> records(kChunks);
+    PilotPasses passes(view, combined, grid, threads);
+    const PassCounts counts =
+        passes.Trace(*integrators.bdpt, kFirstLearningPass + pass, nullptr, {.paths = std::span(records)});
+    rays += counts.cameraRays + counts.indirectRays + counts.shadowRays;
+    learning.Learn(records);
+    if (!std::has_single_bit(pass + 1)) continue;
+    learning.Decide(pass + 1, threads, mayGuide);
+    view.guide = learning.Guide();
+    view.roulette = learning.Roulette();
+    if (!learning.IsRecording()) return;
+  }
 }
 
 // LightSpread of each integrator, by pixel: sums over the samples of a pixel.
@@ -213,6 +241,20 @@ void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& phot
 // and a room with a window pane (160×90); samples of vcm and sppm take 1.26 to 1.55 times in a pool seen from above and
 // a glass of wine, with a guide from the start.
 constexpr double kDensities = 1.25;
+// The same for guided camera paths: the guides' densities at every vertex that may be guided. Samples of path and bdpt
+// take 1.31 and 1.35 times the counted time in scenes/door, over that without guides (160×90, 320 and 128 samples).
+constexpr double kGuidedPaths = 1.3;
+
+// Factors of guides on the costs of candidates.
+struct GuideCosts {
+  double ofMerging;  // of light paths, for candidates that merge
+  double ofPaths;    // of camera paths
+
+  double Of(size_t candidate) const { return Merges(candidate) ? ofPaths * ofMerging : ofPaths; }
+  void Apply(std::span<CandidateCost> costs) const {
+    for (size_t k = 0; k < costs.size(); ++k) costs[k] = {Of(k) * costs[k].paths, Of(k) * costs[k].merging};
+  }
+};
 
 // Adds candidates that decide by the place in the picture whether they merge and whether their camera paths may end
 // early. `all`: by their index.
@@ -287,7 +329,7 @@ struct ErrorsOfOneLight {
 // Converts the candidates from several lights at a vertex to one, and adds again those with several that have less
 // error in equal time than any with one. `ofGuide`: factor of the guide on the costs of candidates that merge.
 void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Records& records, int pixels, int passes,
-                        double ofGuide, RenderPilot& pilot) {
+                        const GuideCosts& ofGuides, RenderPilot& pilot) {
   const ErrorsOfOneLight errors(spreads, records, passes);
   const auto several = CostsOf(counted, pixels), one = CostsOf(WithOneLight(counted, spreads.path), pixels);
   const std::vector<PilotCandidate> before = pilot.candidates;
@@ -299,8 +341,8 @@ void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Re
       const size_t whole =
           candidate.integrator == "path" ? 0 : Find(candidate.integrator == "vcm", counts.log2LightPaths, false, 1);
       const size_t ending = EndingOf(whole) < kCandidates ? EndingOf(whole) : whole;
-      candidate.cost -= (Merges(whole) ? ofGuide : 1.0) * std::lerp(several[whole].paths - one[whole].paths,
-                                                                    several[ending].paths - one[ending].paths, ends);
+      candidate.cost -= ofGuides.Of(whole) * std::lerp(several[whole].paths - one[whole].paths,
+                                                       several[ending].paths - one[ending].paths, ends);
     }
   }
   const PilotCandidate* const best = pilot.Best();
@@ -399,12 +441,14 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const PixelFilter filter(settings.filter);
   Counted counted;
   counted.tracesAnew = scene.hasMotion || scene.isSpectral;
+  LearnPaths(integrators, combined, grid, threads, !isGuided, view);
   Spreads spreads(grid.Pixels());
   CountPaths(integrators, view, combined, grid, threads, counted, choosesLights ? &spreads : nullptr);
   const int most = passCount > 0 ? passCount : PassesFor(counted, grid.Pixels());
   const int first = passCount > 0 ? passCount : kFewestPasses;
   if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
-  Records records(grid, filter, SplatCount(settings), kChunks, std::max(most, kMostPasses));
+  Records records(grid, filter, SplatCount(settings), !settings.SamplesLightEdges(), kChunks,
+                  std::max(most, kMostPasses));
   Passes passes{integrators, tracer,  store,   learned,           WiderRadius(fewer, photons.alpha),
                 threads,     records, counted, std::move(spreads)};
   const bool isSobol = settings.sampler == SamplerKind::Sobol;
@@ -419,9 +463,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     view.lighting = std::make_shared<const LightingServices>(lighting->With(nullptr, learned->Guide()));
     CountGuided(integrators, photons, passes.wider, threads, view, combined, grid, passes.counted, costs);
   }
-  const double ofGuide = isGuided || willBeGuided ? kDensities : 1.0;
-  for (size_t k = 0; k < kCandidates; ++k)
-    if (Merges(k)) costs[k] = {ofGuide * costs[k].paths, ofGuide * costs[k].merging};
+  const GuideCosts ofGuides{isGuided || willBeGuided ? kDensities : 1.0, view.guide ? kGuidedPaths : 1.0};
+  ofGuides.Apply(costs);
   std::vector<PilotCandidate> all = CandidatesWith(costs);
   if (!records.SetErrors(passCount, filter.SquaredWeight(), isSobol, all)) return {};
   for (size_t k = 0; k < kCandidates && willBeGuided; ++k)
@@ -431,7 +474,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);
   if (choosesLights)
-    ChooseLightSamples(passes.counted, passes.spreads, records, grid.Pixels(), passCount, ofGuide, pilot);
+    ChooseLightSamples(passes.counted, passes.spreads, records, grid.Pixels(), passCount, ofGuides, pilot);
   const EmissionGuide* const guide = isGuided ? guiding->Guide() : willBeGuided ? learned->Guide() : nullptr;
   if (settings.values.IsOn("merge")) AddSppm(scene, guide, combined, grid, records, passCount, threads, pilot);
   return pilot;

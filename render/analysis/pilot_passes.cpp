@@ -77,6 +77,9 @@ PassCounts PilotPasses::Trace(const Integrator& integrator, uint32_t pass, const
     context.mediumTimes = &counts.media;
     context.splats = integrator.Paths() == TracedPaths::Camera ? nullptr : &splats;
     context.gather = gather;
+    context.pixel = static_cast<uint32_t>(grid_.PixelOf(x, y));
+    context.sample = pass;
+    if (!noted.paths.empty()) context.records = &noted.paths[chunk];
     const PixelRay pixel = MakePixelRay(scene_, filter_, column, row, context.time, sampler);
     const CameraRay& ray = pixel.camera;
     Recorder* const recorder = noted.recorders.empty() ? nullptr : &noted.recorders[chunk];

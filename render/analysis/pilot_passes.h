@@ -23,6 +23,7 @@ struct Noted {
   std::vector<LightSpread>* spreads = nullptr;
   std::vector<double>* values = nullptr;  // by pixel: what the sample adds to it
   std::vector<double>* biases = nullptr;  // the same of SampleContext::mergeBias
+  std::span<PathRecords> paths = {};      // records of camera paths; one for each chunk
 };
 
 class PilotPasses {

@@ -176,17 +176,20 @@ void Recorder::KeepRare(const ConnectedPath& path, double value, size_t pixel, c
 
 void Recorder::AddSplat(const ConnectedPath& path, double value, size_t pixel) {
   Splat splat{pixel, path.s + path.t == 2, path.weight * value, {}, {}};
+  const bool isCounted = !splat.isSeen || countsSeen_;
   if (Known(path.sums) > 0) {
     const Factors found = FactorsOf(path.sums, 1 / splatCount_);
     const auto& [squares, factors, ofLight] = found;
     for (size_t k = 0; k < kCandidates; ++k)
       splat.squares[k] = squares[k] > 0 ? splat.weighted * value * factors[k] : -1;
     splat.ofLight = ofLight;
-    KeepRare(path, value, pixel, found);
+    if (isCounted) KeepRare(path, value, pixel, found);
   } else {
     splat.squares.fill(splat.weighted * value / splatCount_);
     splat.ofLight.fill(1);
   }
+  if (!isCounted)
+    for (double& square : splat.squares) square = std::min(square, 0.0);
   if (pixel >= first_ && pixel < end_) {
     Add(splat);
   } else {
@@ -208,10 +211,15 @@ void Recorder::Add(const Splat& splat) {
 void Recorder::Add(const ConnectedPath& path, double value) {
   Moments& here = pixels_.moments[pixel_];
   const double weighted = path.weight * value, known = Known(path.sums);
-  (path.s + path.t == 2 ? here.seen : here.mean) += weighted;
-  if (!(known > 0)) return AddAlike(path, value);
+  const bool isSeen = path.s + path.t == 2, isCounted = !isSeen || countsSeen_;
+  (isSeen ? here.seen : here.mean) += weighted;
+  if (!(known > 0)) return isCounted ? AddAlike(path, value) : void();
   const Factors moments = FactorsOf(path.sums, 1);
   const auto& [squares, factors, ofLight] = moments;
+  if (!isCounted) {
+    for (size_t k = 0; k < kCandidates; ++k) here.missing[k] += squares[k] > 0 ? 0 : weighted;
+    return;
+  }
   for (size_t k = 0; k < kCandidates; ++k) {
     here.square[k] += weighted * value * factors[k];
     here.ofLight[k] += weighted * value * factors[k] * ofLight[k];
@@ -261,14 +269,15 @@ double Recorder::SplatOf(const ConnectedPath& path, double value, double lightPa
   return overlap * lightPaths * lightPaths * splatSquare / squares * value / pixels;
 }
 
-Records::Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks, int mostPasses)
+Records::Records(const Grid& grid, const PixelFilter& filter, double splatCount, bool countsSeen, int chunks,
+                 int mostPasses)
     : grid_(grid), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())) {
   const auto pixels = static_cast<size_t>(grid.Pixels());
   pixels_.moments.resize(pixels);
   pixels_.found.resize(pixels);
   recorders_.reserve(static_cast<size_t>(chunks));
   for (int chunk = 0; chunk < chunks; ++chunk) {
-    recorders_.emplace_back(grid, filter, splatCount, mostPasses, pixels_,
+    recorders_.emplace_back(grid, filter, splatCount, countsSeen, mostPasses, pixels_,
                             static_cast<size_t>(BeginOfChunk(grid.Pixels(), chunk, chunks)),
                             static_cast<size_t>(BeginOfChunk(grid.Pixels(), chunk + 1, chunks)));
   }

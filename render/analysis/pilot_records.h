@@ -128,13 +128,15 @@ struct PixelSums {
 // pass: sums do not depend on the number of threads.
 class Recorder final : public PathObserver {
  public:
-  // `first`, `end`: pixels of the chunk. `splatCount`: that of the weights. `mostPasses`: of the pilot.
-  Recorder(const Grid& grid, const PixelFilter& filter, double splatCount, int mostPasses, PixelSums& pixels,
-           size_t first, size_t end)
+  // `first`, `end`: pixels of the chunk. `splatCount`: that of the weights. `mostPasses`: of the pilot. `countsSeen`:
+  // of Records.
+  Recorder(const Grid& grid, const PixelFilter& filter, double splatCount, bool countsSeen, int mostPasses,
+           PixelSums& pixels, size_t first, size_t end)
       : grid_(grid),
         filmPixels_(grid.filmPixels),
         spread_(filter.SplatCount()),
         splatCount_(splatCount),
+        countsSeen_(countsSeen),
         renders_(kTypicalSamples / grid.Pixels()),
         mostPasses_(mostPasses),
         pixels_(pixels),
@@ -191,7 +193,8 @@ class Recorder final : public PathObserver {
   double filmPixels_, weight_ = 1;
   double spread_;      // pixels among which a splat is divided
   double splatCount_;  // of the weights
-  double renders_;     // typical renders for each of the pilot's samples, times its passes
+  bool countsSeen_;
+  double renders_;  // typical renders for each of the pilot's samples, times its passes
   int mostPasses_;
   size_t pixel_ = 0;
   PixelSums& pixels_;
@@ -211,8 +214,9 @@ class Recorder final : public PathObserver {
 // Combines the records of all chunks into the errors of the candidates.
 class Records {
  public:
-  // `splatCount`: that of the weights. `chunks`: of the pixels, each with a recorder.
-  Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks, int mostPasses);
+  // `splatCount`: that of the weights. `countsSeen`: light that the camera sees itself is a part of the noise. It is
+  // not if further camera rays look for it (render/light_edges.h). `chunks`: of the pixels, each with a recorder.
+  Records(const Grid& grid, const PixelFilter& filter, double splatCount, bool countsSeen, int chunks, int mostPasses);
 
   std::span<Recorder> Recorders() { return recorders_; }
 

@@ -166,7 +166,7 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
     }
   }
   measured.LeaveOutNoisiest();
-  measured.AddSeen(seen);
+  if (!settings.SamplesLightEdges()) measured.AddSeen(seen);
   return counts;
 }
 

@@ -492,6 +492,10 @@ bool RenderSettings::Wants(const char* pixelLayer) const {
                      [&](const PixelLayer* wanted) { return std::string(wanted->name) == pixelLayer; });
 }
 
+bool RenderSettings::SamplesLightEdges() const {
+  return values.IsOn("light-edges") && !sensor.Limits() && PixelFilter(filter).SquaredWeight() == 1;
+}
+
 bool RenderSettings::WantsFirstHit() const {
   const auto isOfSamples = [](const PixelLayer* layer) { return IsOfSamples(*layer); };
   return firstHit || !std::all_of(pixelLayers.begin(), pixelLayers.end(), isOfSamples);

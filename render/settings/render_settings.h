@@ -77,7 +77,9 @@ struct RenderSettings {
     const auto set = static_cast<int>(values.Integer("light-samples"));
     return set > 0 ? set : counts ? counts->lightSamples : 1;
   }
-  bool SamplesLightEdges() const { return values.IsOn("light-edges"); }
+  // True if samples may have several camera rays where the camera sees edges of lights. Not if samples are limited or
+  // have negative weights: those cannot be divided.
+  bool SamplesLightEdges() const;
   bool GuidesPaths() const { return values.IsOn("guide-paths"); }
   bool AlwaysGuidesPaths() const { return values.IsOn("guide-always"); }
   LightSelection LightSampler() const { return *ParseLightSelection(values.Word("light-sampler")); }
