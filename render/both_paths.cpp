@@ -13,22 +13,7 @@ namespace {
 
 constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed for the photons of the first pass
 constexpr uint64_t kMorePaths = 0xbb67ae8584caa73b;       // changes the seed for further light paths of a sample
-constexpr int kPassTimes = -2;                            // in the place of the pixel row, for the times of passes
-
-// Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
-// time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified, whatever
-// the sampler of the pixels: there are as few as passes. `pass` counts from the beginning of the sequence.
-//
-// The stages of an adaptive render share a sequence that begins with its first pass. Each of them is an aligned block
-// of it, which Owen scrambling puts in random order: given the times of earlier stages, which the rates depend on, all
-// passes of a stage have the same distribution of times. What a stage adds to a pixel has therefore an expectation that
-// does not depend on the rates, and over all earlier times that is the pixel's.
-float PassTime(uint64_t seed, uint32_t pass) {
-  Sampler sampler(SamplerKind::Sobol, seed);
-  sampler.StartPixelSample(0, kPassTimes, pass);
-  sampler.SetDimension(dimensions::kTime);
-  return sampler.Get1D();
-}
+constexpr int kPassTimes = -2;                            // in the place of the pixel row, for what passes share
 
 // A pass of camera and light paths, in chunks of the pixels of the full image.
 class BothPaths {
@@ -82,12 +67,6 @@ class BothPaths {
   class AdaptivePixels;
   struct SlotSampler;
 
-  float TimeOf(uint32_t index) const {
-    if (!pass_.allocation) return PassTime(pass_.settings.seed, index);
-    const uint32_t first = pass_.allocation->Stage().first - pass_.allocation->Stage().before;
-    return PassTime(first == 0 ? pass_.settings.seed : MixBits(pass_.settings.seed + first), index - first);
-  }
-
   uint64_t PathsPerRound() const { return static_cast<uint64_t>(chunks_) * chunkPaths_; }
   uint64_t SeedOfPhotons() const { return MixBits(pass_.Seed() + kBeforeTheFirst); }
 
@@ -110,7 +89,8 @@ class BothPaths {
   // Traces the pixels from `round` on, as many as the chunks take. Without `withCamera`: light paths for their photons
   // only.
   void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
-    const float passTime = wanted_ && pass_.scene.hasMotion ? TimeOf(index) : 0;
+    const float passTime =
+        wanted_ && pass_.scene.hasMotion ? SharedByPass(pass_.settings.seed, pass_.allocation, index).time : 0;
     ParallelFor(chunks_, pass_.threads, [&](int chunk) {
       uint64_t begin = std::min(round + static_cast<uint64_t>(chunk) * chunkPaths_, end);
       uint64_t chunkEnd = std::min(begin + chunkPaths_, end);
@@ -363,6 +343,16 @@ void BothPaths::StartLightPath(size_t chunk, bool keepsPhotons, uint32_t index, 
 }
 
 }  // namespace
+
+SharedByPass::SharedByPass(uint64_t seed, const SampleAllocation* allocation, uint32_t pass) {
+  const uint32_t first = allocation ? allocation->Stage().first - allocation->Stage().before : 0;
+  Sampler sampler(SamplerKind::Sobol, first == 0 ? seed : MixBits(seed + first));
+  sampler.StartPixelSample(0, kPassTimes, pass - first);
+  sampler.SetDimension(dimensions::kTime);
+  const Point2 point = sampler.Get2D();
+  time = point.x;
+  wavelengths = point.y;
+}
 
 RenderCounts TraceBothPaths(const Pass& pass, PhotonStore* kept) {
   return BothPaths(pass, kept).Trace();

@@ -5,6 +5,22 @@
 
 namespace lampyr {
 
+// What all paths of a pass with photons share. Time: of the shutter, in scenes with motion: a photon lies where the
+// surface was at the time of its path, so that only paths of the same time may gather it. Wavelengths: the number that
+// they are chosen by, in scenes with motion and wavelengths. Times and wavelengths of consecutive passes are stratified
+// together, whatever the sampler of the pixels: what a moving object shows or covers for a part of the shutter has all
+// of the spectrum. `pass`: index in the render.
+//
+// The stages of an adaptive render (`allocation`) share a sequence that begins with its first pass. Each of them is an
+// aligned block of it, which Owen scrambling puts in random order: given the times of earlier stages, which the rates
+// depend on, all passes of a stage have the same distribution of times. What a stage adds to a pixel has therefore an
+// expectation that does not depend on the rates, and over all earlier times that is the pixel's.
+struct SharedByPass {
+  float time = 0, wavelengths = 0;  // in [0, 1)
+
+  SharedByPass(uint64_t seed, const SampleAllocation* allocation, uint32_t pass);
+};
+
 RenderCounts TraceBothPaths(const Pass& pass, PhotonStore* kept);
 
 }  // namespace lampyr

@@ -150,10 +150,13 @@ RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, 
   }
   RenderCounts counts;
   RenderSettings tuned = settings;
+  const bool sharesTime = scene.hasMotion && integrator.Photons();
   std::optional<WavelengthRange> even;
   if (settings.bands) even = {settings.bands->from, settings.bands->to};
   for (uint32_t sample = first; sample < first + count; ++sample) {
-    const auto wavelengths = std::make_shared<const Wavelengths>(Wavelengths::OfPass(settings.seed, sample, even));
+    const auto wavelengths = std::make_shared<const Wavelengths>(
+        sharesTime ? Wavelengths(static_cast<double>(SharedByPass(settings.seed, allocation, sample).wavelengths), even)
+                   : Wavelengths::OfPass(settings.seed, sample, even));
     if (film.HasBands()) film.SetLanes(InBands(*wavelengths, *settings.bands));
     const RenderScene there = scene.AtWavelengths(wavelengths, integrator.MaterialsAfterWide());
     tuned.sensor = settings.sensor.Of(wavelengths->ToRgb());

@@ -199,7 +199,7 @@ class CameraSide final : public PathVisitor {
     if (sample_.context.layers)
       AddFoundToLayers(sample_.context, path, state.event, sample_.context.outputs->OfMedia(), seen);
     sample_.radiance += seen;
-    if (sample_.context.observer && sample_.context.observer->WantsSums()) [[unlikely]]
+    if (sample_.IsObserved()) [[unlikely]]
       ReportGlow(path, seen);
   }
 
