@@ -79,7 +79,8 @@ Translate 0 1.2 -0.5 Shape "sphere" "float radius" 0.3 AttributeEnd
 }
 
 // The layers of single techniques add up to the picture, in a crop and with a wide filter, too; beside a layer by an
-// expression, with pixels of different numbers of samples, and where light is carried by wavelength.
+// expression, with pixels of different numbers of samples, where light is carried by wavelength, and with a medium that
+// glows.
 class Strategies : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
 TEST_P(Strategies, AddUpToThePicture) {
@@ -98,6 +99,11 @@ AttributeBegin AreaLightSource "diffuse" "rgb L" [8 7 6] Translate -0.8 1.2 -0.6
 )" + kGround + "Material \"dielectric\" " +
                      glass + R"(
 Translate 0 0.6 0 Shape "sphere" "float radius" 0.6
+)";
+  if (what == "glow")
+    text +=
+        R"(MakeNamedMedium "fire" "string type" "homogeneous" "rgb sigma_a" [1 1 1] "rgb sigma_s" [1 1 1] "rgb Le" [2 1 0.5]
+MediumInterface "fire" "" Material "interface" Translate -0.7 0 -0.5 Shape "sphere" "float radius" 0.3
 )";
   text.replace(text.find("\"box\""), 5, "\"gaussian\"");
   const Image image = RenderText(text, 16, overrides, 2).image;
@@ -137,7 +143,7 @@ Translate 0 0.6 0 Shape "sphere" "float radius" 0.6
 
 INSTANTIATE_TEST_SUITE_P(Of, Strategies,
                          testing::Combine(testing::Values("bdpt", "vcm"),
-                                          testing::Values("plain", "layers", "adaptive", "spectral")),
+                                          testing::Values("plain", "layers", "adaptive", "spectral", "glow")),
                          [](const auto& tested) {
                            return std::get<0>(tested.param) + "_" + std::get<1>(tested.param);
                          });

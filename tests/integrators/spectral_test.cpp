@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/byte_stream.h"
+#include "render/both_paths.h"
 #include "scene/spectrum.h"
 #include "spectral/cie.h"
 #include "spectral/color_space.h"
@@ -355,6 +356,53 @@ TEST(Spectral, ColoursAreKept) {
     const double largest = std::max({MeanOfChannel(rgb, 0), MeanOfChannel(rgb, 1), MeanOfChannel(rgb, 2)});
     for (size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(MeanOfChannel(spectral, c), MeanOfChannel(rgb, c), 5e-3 * largest) << text << c;
+  }
+}
+
+// A part of the shutter's time, long or short, has passes of all wavelengths.
+TEST(Spectral, TimesAndWavelengthsOfPassesAreStratifiedTogether) {
+  constexpr uint32_t kCells = 8;
+  for (const uint64_t seed : {1u, 2u, 3u}) {
+    for (const uint32_t first : {0u, 64u, 128u}) {
+      std::vector<int> cells(kCells * kCells);
+      for (uint32_t pass = first; pass < first + kCells * kCells; ++pass) {
+        const SharedByPass shared(seed, nullptr, pass);
+        const auto of = [](float x) { return static_cast<size_t>(x * kCells); };
+        ++cells[of(shared.time) * kCells + of(shared.wavelengths)];
+      }
+      for (const int count : cells) EXPECT_EQ(count, 1) << seed << ", from " << first;
+    }
+  }
+}
+
+// A lamp that passes before a grey wall hides it for a part of the time, and lights it from elsewhere in another part.
+TEST(Spectral, MovingThingsAreGrey) {
+  for (const char* integrator : {"bdpt", "vcm", "sppm"}) {
+    const std::string text = std::string("Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n") +
+                             "LookAt 0 -3 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nIntegrator \"" +
+                             integrator + R"(" "integer maxdepth" 3
+WorldBegin
+AttributeBegin AreaLightSource "diffuse" "rgb L" [1 1 1]
+ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
+Translate -0.5 0 0 Shape "sphere" "float radius" 0.3 AttributeEnd
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "bilinearmesh" "point3 P" [-2 1 -2  2 1 -2  -2 1 2  2 1 2]
+)";
+    for (const uint64_t seed : {1u, 2u}) {
+      RenderOverrides overrides;
+      overrides.spectral = true;
+      overrides.seed = seed;
+      const Image image = RenderText(text, 256, overrides, 2).image;
+      Vector3d sum(0.0);
+      for (int y = 4; y < 12; ++y) {
+        for (int x = 12; x < 16; ++x)
+          for (size_t c = 0; c < 3; ++c) sum[static_cast<int>(c)] += static_cast<double>(image.At(x, y, c));
+      }
+      std::printf("[   info   ] %s, seed %d: R/G %.3f, B/G %.3f\n", integrator, static_cast<int>(seed), sum.x / sum.y,
+                  sum.z / sum.y);
+      EXPECT_NEAR(sum.x / sum.y, 1, 0.05) << integrator << ", seed " << seed;
+      EXPECT_NEAR(sum.z / sum.y, 1, 0.05) << integrator << ", seed " << seed;
+    }
   }
 }
 
