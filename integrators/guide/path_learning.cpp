@@ -37,8 +37,8 @@ constexpr double kWorthwhile = 1.6, kWorthwhileForBoth = 1.2;
 constexpr double kSure = 1, kSurelyGains = 2, kSurelyNot = 2;
 // Smallest effective number of paths for a verdict.
 constexpr double kFewestTested = 16;
-// Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
-constexpr uint32_t kLearned = 64, kHopeless = 8;
+// Samples per pixel at which recording ends when guiding would not help.
+constexpr uint32_t kHopeless = 8;
 // Fraction of the worthwhile gain from which on a guide that is not used yet is given more samples.
 constexpr double kPromising = 0.3;
 // A guide is fitted anew when at least this share of the events is new.
@@ -205,14 +205,14 @@ bool PathLearning::Decide(uint32_t samples, int threads, bool mayUse) {
   roulette_.Learn(latest_, scales);
   const bool hasNews = Keep(scales);
   latest_.Clear();
-  if (!always_ && !isWorthwhile && samples >= (seemsHopeless_ ? kHopeless : kLearned)) {
+  if (!always_ && !isWorthwhile && samples >= (seemsHopeless_ ? kHopeless : kLastMilestone)) {
     tried_ = nullptr;
   } else if (hasNews || !tried_) {
     // The guide put to use is made of more events than the one that was tested.
     tried_ = std::make_shared<const PathGuide>(kept_, keptOfLight_, threads);
   }
   guide_ = always_ || isWorthwhile ? tried_ : nullptr;
-  if (!tried_ || samples >= kLearned) {
+  if (!tried_ || samples >= kLastMilestone) {
     isRecording_ = false;
     kept_ = keptOfLight_ = {};
     roulette_.End();

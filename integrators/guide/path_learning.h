@@ -23,6 +23,9 @@ class GainEstimate;
 
 class PathLearning {
  public:
+  // Samples per pixel after which recording ends in any case.
+  static constexpr uint32_t kLastMilestone = 64;
+
   // Image of width × height pixels, of which `recorded` are rendered (the crop). `forLight`: light paths are guided,
   // too. `always`: a guide is used as soon as there is one.
   PathLearning(int width, int height, size_t recorded, bool forLight, bool always);

@@ -32,6 +32,7 @@ constexpr double kWellKnown = 0.05;
 // Passes of which guides and the roulette of camera paths are learned, fewer if they take so many rays. Their samples
 // are none of the recorded ones.
 constexpr uint32_t kLearningPasses = 4, kFirstLearningPass = 256;
+constexpr uint32_t kPassesOfGuide = 2;  // of which a guide is made, to be tested on the others
 constexpr uint64_t kLearningRays = 200000;
 // Lights that are chosen at a vertex at most; the pilot decides between them and one.
 constexpr int kSeveralLights = 2;
@@ -124,12 +125,13 @@ void LearnPaths(const PilotIntegrators& integrators, const RenderSettings& combi
         passes.Trace(*integrators.bdpt, kFirstLearningPass + pass, nullptr, {.paths = std::span(records)});
     rays += counts.cameraRays + counts.indirectRays + counts.shadowRays;
     learning.Learn(records);
-    if (!std::has_single_bit(pass + 1)) continue;
+    if (pass + 1 != kPassesOfGuide) continue;
     learning.Decide(pass + 1, threads, mayGuide);
-    view.guide = learning.Guide();
     view.roulette = learning.Roulette();
-    if (!learning.IsRecording()) return;
   }
+  learning.Decide(PathLearning::kLastMilestone, threads, mayGuide);
+  view.guide = learning.Guide();
+  view.roulette = learning.Roulette();
 }
 
 // LightSpread of each integrator, by pixel: sums over the samples of a pixel.
