@@ -36,7 +36,7 @@ struct PilotCandidate {
   double noiseGrowth = 1, biasError = 0;
   double gainOfSobol = 1;  // by which well-distributed samples lower the error; `error` is that of those
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
-  // techniques.
+  // techniques. Without light that the camera sees itself, where further rays look for it.
   std::vector<double> secondMoments;
   std::vector<double> tileErrors;     // of each tile: its part of `error`
   std::vector<double> tileVariances;  // of each tile: squared standard error of that
