@@ -4,9 +4,10 @@
 // A path with the throughput β that arrives in a region goes on with the probability
 //   q = β √(M / C) / √(V / C_I),
 // where M is the second moment of what paths find beyond an event there, per unit of throughput, C the rays that this
-// takes, V the variance of a pixel's samples and C_I the rays of a sample. β and V are relative to the brightness of
-// the part of the picture. So paths are not ended because they are long, but where what they may still find is small
-// against the noise of the pixel. The walk raises q where a survivor would carry more than a path that nothing ends.
+// takes, V the variance of a pixel's samples (of what is found beyond the first event, and of a part of the direct
+// light there) and C_I the rays of a sample. β and V are relative to the brightness of the part of the picture. So
+// paths are not ended because they are long, but where what they may still find is small against the noise of the
+// pixel. The walk raises q where a survivor would carry more than a path that nothing ends.
 #pragma once
 
 #include <memory>
