@@ -253,8 +253,10 @@ double Film::FourthOfMean(size_t pixel) const {
 
 SplatList Film::MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const {
   const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixel centres
+  // A splat is divided by the light paths of all pixels: what it adds to a sample of one pixel is limited.
+  const float pixels = static_cast<float>(fullWidth_) * static_cast<float>(fullHeight_);
   SplatList list(Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius,
-                 sensor);
+                 sensor.WithLimitTimes(pixels));
   if (!HasBands()) return list;
   list.SetLanes(LanesOfSplats());
   return list;

@@ -26,6 +26,12 @@ class SensorResponse {
     SensorResponse response(imagingRatio_, balance_ * toRgb, limited_ * toRgb, maxComponent_);
     return response;
   }
+  // The same with a limit that is larger by `factor`.
+  SensorResponse WithLimitTimes(float factor) const {
+    SensorResponse response = *this;
+    response.maxComponent_ *= factor;
+    return response;
+  }
   float ImagingRatio() const { return imagingRatio_; }
   bool Limits() const { return maxComponent_ < kInfinity; }
 

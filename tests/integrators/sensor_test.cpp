@@ -116,6 +116,32 @@ TEST(Sensor, LimitsSamples) {
   }
 }
 
+// What a splat adds to a pixel is limited, and not the value that is divided by the number of light paths.
+TEST(Sensor, LimitsSplatsAsSamplesOfAPixel) {
+  const auto mean = [](const std::string& integrator, const std::string& film, const std::string& size) {
+    std::string text = SceneWith(film);
+    const std::string small = "\"integer xresolution\" 12 \"integer yresolution\" 8";
+    text.replace(text.find(small), small.size(), size);
+    const Image image = RenderText(text, 64, With(integrator)).image;
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image.RgbAt(x, y).Luminance());
+    return sum / (image.width * image.height);
+  };
+  const std::string small = "\"integer xresolution\" 24 \"integer yresolution\" 16",
+                    large = "\"integer xresolution\" 48 \"integer yresolution\" 32",
+                    limit = "\"float maxcomponentvalue\" 0.4";
+  const double path = mean("path", limit, large), whole = mean("path", "", large);
+  for (const char* integrator : {"light", "bdpt", "vcm"}) {
+    const double few = mean(integrator, limit, small), many = mean(integrator, limit, large);
+    std::printf("[   info   ] %s: %.4g of few pixels, %.4g of many; path %.4g, without a limit %.4g\n", integrator, few,
+                many, path, whole);
+    EXPECT_NEAR(few, many, 0.05 * many) << integrator;
+    EXPECT_GT(many, 0.6 * path) << integrator;  // not equal: each integrator has bright samples of its own
+    EXPECT_LT(many, whole) << integrator;
+  }
+}
+
 TEST(Sensor, WhiteBalanceMakesTheLightWhite) {
   // CIE illuminant A is a black body of 2856 K at (0.44757, 0.40745); D50 is daylight at (0.3457, 0.3585), D65 ours.
   const struct {
