@@ -42,7 +42,7 @@ struct BlockVariance {
     sum += value;
     squares += value * value;
   }
-  // Of all samples together; 0 for less than two.
+  // The sum of the variances of the block's samples; 0 if there are fewer than two.
   double Total() const { return count < 2 ? 0.0 : std::max(squares - sum * sum / count, 0.0) * count / (count - 1); }
 };
 

@@ -247,8 +247,8 @@ void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& phot
 // and a room with a window pane (160×90); samples of vcm and sppm take 1.26 to 1.55 times in a pool seen from above and
 // a glass of wine, with a guide from the start.
 constexpr double kDensities = 1.25;
-// The same for guided camera paths: the guides' densities at every vertex that may be guided. Samples of path and bdpt
-// take 1.31 and 1.35 times the counted time in scenes/door, over that without guides (160×90, 320 and 128 samples).
+// Factor on the cost of integrators with guided camera paths, for the densities of the guides at every vertex. Samples
+// of path and bdpt take 1.31 and 1.35 times the counted time in scenes/door, over that without guides (160×90, 320 and 128 samples).
 constexpr double kGuidedPaths = 1.3;
 
 // Factors of guides on the costs of candidates.

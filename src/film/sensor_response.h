@@ -26,7 +26,7 @@ class SensorResponse {
     SensorResponse response(imagingRatio_, balance_ * toRgb, limited_ * toRgb, maxComponent_);
     return response;
   }
-  // The same with a limit that is larger by `factor`.
+  // The response with a limit of `factor` times maxComponent.
   SensorResponse WithLimitTimes(float factor) const {
     SensorResponse response = *this;
     response.maxComponent_ *= factor;

@@ -116,7 +116,7 @@ TEST(Sensor, LimitsSamples) {
   }
 }
 
-// What a splat adds to a pixel is limited, and not the value that is divided by the number of light paths.
+// The limit applies to what a splat adds to a pixel, whatever the number of pixels.
 TEST(Sensor, LimitsSplatsAsSamplesOfAPixel) {
   const auto mean = [](const std::string& integrator, const std::string& film, const std::string& size) {
     std::string text = SceneWith(film);
