@@ -5,9 +5,9 @@
 
 namespace lampyr {
 
-// The shutter time and the wavelengths that all paths of a pass with photons share, in scenes with motion. A photon lies
-// where the surface was at the time of its path, so that only paths of the same time may gather it. `wavelengths` is
-// the number that the wavelengths are chosen by. Times and wavelengths of consecutive passes are stratified
+// The shutter time and the wavelengths that all paths of a pass with photons share, in scenes with motion. A photon
+// lies where the surface was at the time of its path, so that only paths of the same time may gather it. `wavelengths`
+// is the number that the wavelengths are chosen by. Times and wavelengths of consecutive passes are stratified
 // together, whatever the sampler of the pixels: what a moving object shows or covers for a part of the shutter has all
 // of the spectrum. `pass`: index in the render.
 //

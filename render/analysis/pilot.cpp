@@ -248,7 +248,8 @@ void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& phot
 // a glass of wine, with a guide from the start.
 constexpr double kDensities = 1.25;
 // Factor on the cost of integrators with guided camera paths, for the densities of the guides at every vertex. Samples
-// of path and bdpt take 1.31 and 1.35 times the counted time in scenes/door, over that without guides (160×90, 320 and 128 samples).
+// of path and bdpt take 1.31 and 1.35 times the counted time in scenes/door, over that without guides (160×90, 320 and
+// 128 samples).
 constexpr double kGuidedPaths = 1.3;
 
 // Factors of guides on the costs of candidates.
