@@ -326,14 +326,14 @@ struct ErrorsOfOneLight {
     endingBdpt = of(spreads.endingBdpt, spreads.counting);
     endingVcm = of(spreads.endingVcm, 1);
   }
-  // Adds it to the candidate, of whose camera paths the part `ends` may end early.
-  void AddTo(PilotCandidate& candidate, double ends) const {
+  // Adds it to the candidate, of whose camera paths the part `ends` may end early. `gain`: of the points of the
+  // sampler.
+  void AddTo(PilotCandidate& candidate, double ends, double gain) const {
     const bool isPath = candidate.integrator == "path", merges = candidate.integrator == "vcm";
     const std::vector<double>& whole = isPath ? path : merges ? vcm : bdpt;
     const std::vector<double>& ending = isPath ? path : merges ? endingVcm : endingBdpt;
     for (size_t tile = 0; tile < whole.size(); ++tile) {
-      const double error =
-          std::lerp(whole[tile], ending[tile], ends) / (candidate.gainOfSobol > 1 ? kGainOfSelection : 1.0);
+      const double error = std::lerp(whole[tile], ending[tile], ends) / gain;
       candidate.tileErrors[tile] += error;
       candidate.error += error;
     }
@@ -343,7 +343,7 @@ struct ErrorsOfOneLight {
 // Converts the candidates from several lights at a vertex to one, and adds again those with several that have less
 // error in equal time than any with one. `ofGuide`: factor of the guide on the costs of candidates that merge.
 void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Records& records, int pixels, int passes,
-                        const GuideCosts& ofGuides, RenderPilot& pilot) {
+                        bool isSobol, const GuideCosts& ofGuides, RenderPilot& pilot) {
   const ErrorsOfOneLight errors(spreads, records, passes);
   const auto several = CostsOf(counted, pixels), one = CostsOf(WithOneLight(counted, spreads.path), pixels);
   const std::vector<PilotCandidate> before = pilot.candidates;
@@ -351,7 +351,7 @@ void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Re
     for (PilotCandidate& candidate : *candidates) {
       const TechniqueCounts& counts = candidate.counts;
       const double ends = (1 - counts.continuing.Mean()) / (1 - kContinuing);
-      errors.AddTo(candidate, ends);
+      errors.AddTo(candidate, ends, isSobol ? kGainOfSelection : 1.0);
       const size_t whole =
           candidate.integrator == "path" ? 0 : Find(candidate.integrator == "vcm", counts.log2LightPaths, false, 1);
       const size_t ending = EndingOf(whole) < kCandidates ? EndingOf(whole) : whole;
@@ -487,7 +487,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);
   if (choosesLights)
-    ChooseLightSamples(passes.counted, passes.spreads, records, grid.Pixels(), passCount, ofGuides, pilot);
+    ChooseLightSamples(passes.counted, passes.spreads, records, grid.Pixels(), passCount, isSobol, ofGuides, pilot);
   const EmissionGuide* const guide = isGuided ? guiding->Guide() : willBeGuided ? learned->Guide() : nullptr;
   if (settings.values.IsOn("merge")) AddSppm(scene, guide, combined, grid, records, passCount, threads, pilot);
   return pilot;

@@ -34,7 +34,6 @@ struct PilotCandidate {
   // Growth of the noise of a sample of sppm from kTypicalPasses to kBlurredPasses, because the radius shrinks; and its
   // squared bias after kBlurredPasses, times their number. 1 and 0 for all others.
   double noiseGrowth = 1, biasError = 0;
-  double gainOfSobol = 1;  // by which well-distributed samples lower the error; `error` is that of those
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
   // techniques. Without light that the camera sees itself, where further rays look for it.
   std::vector<double> secondMoments;

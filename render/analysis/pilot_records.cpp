@@ -350,7 +350,6 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
     for (double& variance : candidate.tileVariances) variance /= gains[k] * gains[k];
     candidate.uncertainty /= gains[k];
     candidate.error = std::max(candidate.error / gains[k], least_);
-    candidate.gainOfSobol = gains[k];
   }
   return true;
 }

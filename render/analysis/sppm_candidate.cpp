@@ -182,7 +182,6 @@ std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const Rend
   const Counts counts = Trace(scene, counted, settings, grid, best, gain, pairs, threads, measured);
   PilotCandidate candidate;
   candidate.integrator = kName;
-  candidate.gainOfSobol = gain;
   candidate.error = std::max(measured.Error() / gain, records.LeastError());
   candidate.uncertainty = measured.StandardError() / gain;
   // The squared radius of the average pass shrinks as passes^(α - 1), and with it the bias. From the pilot's radius,

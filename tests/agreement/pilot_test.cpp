@@ -432,15 +432,25 @@ TEST(Pilot, LeavesSeenLightToLightEdges) {
   EXPECT_EQ(with.Best()->integrator, "path");
 }
 
-// Camera paths of the pilot are guided where those of a render are: light through a door ajar.
+// Camera paths of the pilot are guided where those of a render are: light through a door ajar. The pilot knows the
+// error of path tracing to some 18 % there, so that three pictures tell more than one: 0.41 times the error, bdpt 0.43.
 TEST(Pilot, LearnsWhereCameraPathsGo) {
-  BuiltScene built = BuildFile("door", 96, 54);
-  const RenderPilot with = RunPilot(built.scene, built.settings, 2, 16);
-  built.settings.values.Set("guide-paths", false);
-  const RenderPilot without = RunPilot(built.scene, built.settings, 2, 16);
-  EXPECT_LT(with.Find("path")->error, 0.5 * without.Find("path")->error);
-  EXPECT_LT(with.Find("bdpt")->error, without.Find("bdpt")->error);
-  EXPECT_GT(with.Find("path")->cost, without.Find("path")->cost);
+  double path = 1, bdpt = 1;
+  for (const auto& [width, height] : {std::pair{80, 45}, {96, 54}, {128, 72}}) {
+    BuiltScene built = BuildFile("door", width, height);
+    const RenderPilot with = RunPilot(built.scene, built.settings, 2, 16);
+    built.settings.values.Set("guide-paths", false);
+    const RenderPilot without = RunPilot(built.scene, built.settings, 2, 16);
+    const auto ratio = [&](const char* integrator) {
+      return with.Find(integrator)->error / without.Find(integrator)->error;
+    };
+    std::printf("[   info   ] %d x %d: path %.2f, bdpt %.2f\n", width, height, ratio("path"), ratio("bdpt"));
+    path *= ratio("path");
+    bdpt *= ratio("bdpt");
+    EXPECT_GT(with.Find("path")->cost, without.Find("path")->cost);
+  }
+  EXPECT_LT(std::cbrt(path), 0.75);
+  EXPECT_LT(std::cbrt(bdpt), 0.8);
 }
 
 // Two lights are chosen at a vertex where they differ, and one where both would tell the same.
