@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/mapped_file.h"
+#include "scene/lexer.h"
 #include "scene/spectrum.h"
 
 namespace lampyr {
@@ -24,6 +25,11 @@ struct Tensor {
 };
 
 using Tensors = std::map<std::string, Tensor>;
+
+// For messages. `name`: any bytes of the file.
+std::string FieldOf(std::string_view name) {
+  return "its field " + ShownWord(name);
+}
 
 // Little-endian, like the processors that this runs on.
 class TensorReader {
@@ -41,7 +47,7 @@ class TensorReader {
     Tensors tensors;
     for (uint32_t i = 0; i < count; ++i) {
       const std::string name = TakeName();
-      if (!tensors.emplace(name, TakeTensor(name)).second) throw Error("its field \"" + name + "\" occurs twice");
+      if (!tensors.emplace(name, TakeTensor(name)).second) throw Error(FieldOf(name) + " occurs twice");
     }
     return tensors;
   }
@@ -67,28 +73,27 @@ class TensorReader {
     const auto type = Take<uint8_t>();
     const auto offset = Take<uint64_t>();
     constexpr uint16_t kMostDimensions = 8;
-    if (dimensions > kMostDimensions) throw Error("its field \"" + name + "\" has too many dimensions");
+    if (dimensions > kMostDimensions) throw Error(FieldOf(name) + " has too many dimensions");
     Tensor tensor;
     uint64_t size = 1;
     for (uint16_t i = 0; i < dimensions; ++i) {
       const auto extent = Take<uint64_t>();
-      if (extent > bytes_.size()) throw Error("its field \"" + name + "\" is larger than the file");
+      if (extent > bytes_.size()) throw Error(FieldOf(name) + " is larger than the file");
       tensor.shape.push_back(extent);
-      if (extent > 0 && size > bytes_.size() / extent)
-        throw Error("its field \"" + name + "\" is larger than the file");
+      if (extent > 0 && size > bytes_.size() / extent) throw Error(FieldOf(name) + " is larger than the file");
       size *= extent;
     }
     if (type == kByte) return tensor;
-    if (type != kFloat) throw Error("its field \"" + name + "\" does not hold 32-bit numbers");
+    if (type != kFloat) throw Error(FieldOf(name) + " does not hold 32-bit numbers");
     if (offset > bytes_.size() || size > (bytes_.size() - offset) / sizeof(float))
-      throw Error("its field \"" + name + "\" goes beyond the end of the file");
+      throw Error(FieldOf(name) + " goes beyond the end of the file");
     tensor.values.resize(size);
     if (size > 0) std::memcpy(tensor.values.data(), bytes_.data() + offset, size * sizeof(float));
     // Far above any measurement; products of values within it stay in the range of float.
     constexpr float kLargest = 1e15f;
     for (const float value : tensor.values) {
       if (!(std::abs(value) <= kLargest))
-        throw Error("its field \"" + name + "\" holds a number that is not finite, or beyond 1e15");
+        throw Error(FieldOf(name) + " holds a number that is not finite, or beyond 1e15");
     }
     return tensor;
   }
@@ -99,12 +104,14 @@ class TensorReader {
 
 const Tensor& Get(const Tensors& tensors, const char* name, size_t dimensions) {
   const auto found = tensors.find(name);
-  if (found == tensors.end()) throw Error(std::string("it has no field \"") + name + "\"");
-  if (found->second.shape.size() != dimensions || found->second.values.empty()) {
-    throw Error(std::string("its field \"") + name + "\" has " + std::to_string(found->second.shape.size()) +
-                " dimensions and not " + std::to_string(dimensions) + ", or no values");
+  if (found == tensors.end()) throw Error("it has no field " + ShownWord(name));
+  const Tensor& tensor = found->second;
+  if (tensor.shape.size() != dimensions) {
+    throw Error(FieldOf(name) + " has " + std::to_string(tensor.shape.size()) + " dimensions and not " +
+                std::to_string(dimensions));
   }
-  return found->second;
+  if (tensor.values.empty()) throw Error(FieldOf(name) + " holds no 32-bit numbers");
+  return tensor;
 }
 
 void CheckNotNegative(const Tensor& tensor, const char* name) {
@@ -171,12 +178,17 @@ MeasuredTable<Color> ReflectanceOf(const Tensors& tensors, const MeasuredData& d
     if (channels != 3) throw Error("its field \"rgb\" does not have three channels");
   } else {
     const Tensor& wavelengths = Get(tensors, "wavelengths", 1);
+    constexpr double kShortest = 100, kVisibleFrom = 360, kVisibleTo = 830;  // nm
     if (wavelengths.values.size() != channels) throw Error("its field \"wavelengths\" does not fit \"spectra\"");
     for (size_t c = 0; c < channels; ++c) {
       spectrum.push_back({static_cast<double>(wavelengths.values[c]), 0});
       if (!(spectrum[c].wavelength > (c > 0 ? spectrum[c - 1].wavelength : 0)))
         throw Error("its field \"wavelengths\" does not ascend");
     }
+    if (spectrum.back().wavelength < kShortest)
+      throw Error("its field \"wavelengths\" ends below 100 nm: they are in nanometres. Are these micrometres?");
+    if (spectrum.back().wavelength < kVisibleFrom || spectrum.front().wavelength > kVisibleTo)
+      throw Error("its field \"wavelengths\" has none that is visible, between 360 and 830 nm");
   }
   const size_t tables = data.phi.size() * data.theta.size();
   std::vector<Color> colors(tables * nodes);
@@ -195,27 +207,57 @@ MeasuredTable<Color> ReflectanceOf(const Tensors& tensors, const MeasuredData& d
   return {std::move(colors), tensor.shape[4], tensor.shape[3]};
 }
 
-void SetSymmetry(MeasuredData& data) {
-  constexpr double kPiExact = 3.14159265358979323846;
+// Adds the first azimuth again after the last one, a turn later.
+void CloseTurn(Tensors& tensors) {
+  constexpr double kTurn = 2 * 3.14159265358979323846;
+  for (const char* name : {"phi_i", "vndf", "luminance", "spectra", "rgb"}) {
+    const auto found = tensors.find(name);
+    if (found == tensors.end() || found->second.shape.empty() || found->second.values.empty()) continue;
+    Tensor& tensor = found->second;
+    const size_t each = tensor.values.size() / tensor.shape[0];
+    const std::vector<float> first(tensor.values.begin(), tensor.values.begin() + static_cast<std::ptrdiff_t>(each));
+    tensor.values.insert(tensor.values.end(), first.begin(), first.end());
+    ++tensor.shape[0];
+  }
+  std::vector<float>& azimuths = tensors.at("phi_i").values;
+  azimuths.back() = static_cast<float>(static_cast<double>(azimuths.front()) + kTurn);
+}
+
+// Sets what part of a turn the azimuths cover: all, a half between multiples of π, or a quarter between multiples of
+// π/2. The rest are mirror images. They may stop one step before the part ends: a turn is closed then.
+void SetSymmetry(Tensors& tensors, MeasuredData& data) {
+  constexpr double kTurn = 2 * 3.14159265358979323846, kRounding = 1e-2;
   data.isIsotropic = data.phi.size() <= 2;
   if (data.isIsotropic) return;
   const auto first = static_cast<double>(data.phi.front()), last = static_cast<double>(data.phi.back());
-  data.symmetry = static_cast<int>(std::lround(2 * kPiExact / (last - first)));
-  if (data.symmetry != 1 && data.symmetry != 2 && data.symmetry != 4)
-    throw Error("its azimuths cover neither a turn, nor a half, nor a quarter of one");
-  data.partX = std::cos(0.5 * (first + last)) < 0 ? -1.0f : 1.0f;
-  data.partY = std::sin(0.5 * (first + last)) < 0 ? -1.0f : 1.0f;
+  const double step = (last - first) / static_cast<double>(data.phi.size() - 1);
+  for (const int symmetry : {4, 2, 1}) {
+    const double part = kTurn / symmetry, missing = part - (last - first), start = first / part;
+    const bool isAligned =
+        symmetry == 1 ? first < -0.5 * kTurn + kRounding : std::abs(start - std::round(start)) * part <= kRounding;
+    if (!isAligned || missing < -kRounding || missing > step + kRounding) continue;
+    data.symmetry = symmetry;
+    data.partX = std::cos(first + 0.5 * part) < 0 ? -1.0f : 1.0f;
+    data.partY = std::sin(first + 0.5 * part) < 0 ? -1.0f : 1.0f;
+    if (symmetry > 1 || missing <= kRounding) return;
+    CloseTurn(tensors);
+    data.phi = tensors.at("phi_i").values;
+    return;
+  }
+  throw Error(
+      "its azimuths run from " + std::to_string(first) + " to " + std::to_string(last) +
+      ", and not through a turn, a half of one between multiples of pi, or a quarter between multiples of pi/2");
 }
 
 }  // namespace
 
 MeasuredData ParseMeasured(std::span<const std::byte> bytes) {
-  const Tensors tensors = TensorReader(bytes).Read();
+  Tensors tensors = TensorReader(bytes).Read();
   constexpr double kPiExact = 3.14159265358979323846;
   MeasuredData data;
   data.theta = AscendingAngles(tensors, "theta_i", 0, 0.5 * kPiExact);
   data.phi = AscendingAngles(tensors, "phi_i", -kPiExact, kPiExact);
-  SetSymmetry(data);
+  SetSymmetry(tensors, data);
   data.normals = TableOf(tensors, "ndf", data);
   data.projected = TableOf(tensors, "sigma", data);
   data.visible = WarpOf(tensors, "vndf", data);

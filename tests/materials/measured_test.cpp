@@ -106,12 +106,68 @@ TEST_F(Measured, AzimuthsOfAnisotropicOnesAreCompletedBySymmetry) {
   }
 }
 
+// A turn may leave out the azimuth at its end, which is that at its start.
+TEST_F(Measured, TurnsAreClosed) {
+  constexpr double kPiExact = 3.14159265358979323846;
+  MeasuredMetal metal = Brushed(1, -kPiExact);
+  metal.microfacets = TrowbridgeReitz(0.3f, 0.5f);
+  std::vector<MeasuredField> fields = MeasuredFieldsOf(metal);
+  for (MeasuredField& field : fields) {
+    if (field.name != "phi_i" && field.shape.size() < 4) continue;
+    field.values.resize(field.values.size() / field.shape[0] * (field.shape[0] - 1));
+    --field.shape[0];
+  }
+  const MeasuredData data = Read(TensorFile(fields));
+  EXPECT_EQ(data.symmetry, 1);
+  EXPECT_EQ(data.phi.size(), static_cast<size_t>(metal.phiCount));
+  const Deviation deviation = DeviationOf(data, metal, TransportMode::Radiance);
+  EXPECT_LT(deviation.value, 0.04);
+  EXPECT_LT(deviation.density, 0.04);
+}
+
+// Mirroring cannot complete parts of a turn that lie askew.
+TEST_F(Measured, AzimuthsAskewAreErrors) {
+  constexpr double kPiExact = 3.14159265358979323846;
+  const auto messageOf = [&](int symmetry, double first, size_t count) {
+    MeasuredMetal metal = Brushed(symmetry, first);
+    metal.thetaCount = 3;
+    metal.side = 4;
+    std::vector<MeasuredField> fields = MeasuredFieldsOf(metal);
+    for (MeasuredField& field : fields) {
+      if (field.name != "phi_i" && field.shape.size() < 4) continue;
+      field.values.resize(field.values.size() / field.shape[0] * count);
+      field.shape[0] = count;
+    }
+    return MessageOf(TensorFile(fields));
+  };
+  EXPECT_EQ(messageOf(2, 0, 13), "");
+  for (const std::string& message : {messageOf(2, -0.5 * kPiExact, 13), messageOf(4, -0.25 * kPiExact, 7),
+                                     messageOf(1, -kPiExact, 19), messageOf(2, 0, 11)})
+    EXPECT_NE(message.find("its azimuths run from"), std::string::npos) << message;
+}
+
 TEST_F(Measured, SpectraBecomeColours) {
   MeasuredMetal metal;
   metal.asSpectra = true;
   metal.reflectance = Color(0.6f);
   const MeasuredData data = Read(TensorFile(MeasuredFieldsOf(metal)));
   EXPECT_LT(DeviationOf(data, metal, TransportMode::Radiance).value, 0.02);
+}
+
+TEST_F(Measured, WavelengthsAreVisibleNanometres) {
+  MeasuredMetal metal;
+  metal.asSpectra = true;
+  metal.thetaCount = 3;
+  metal.side = 4;
+  const auto messageWith = [&](float scale) {
+    std::vector<MeasuredField> fields = MeasuredFieldsOf(metal);
+    for (float& wavelength : fields.back().values) wavelength *= scale;
+    return MessageOf(TensorFile(fields));
+  };
+  EXPECT_EQ(messageWith(1), "");
+  EXPECT_NE(messageWith(1e-3f).find("Are these micrometres?"), std::string::npos);
+  EXPECT_NE(messageWith(0.3f).find("none that is visible"), std::string::npos);
+  EXPECT_NE(messageWith(3).find("none that is visible"), std::string::npos);
 }
 
 // The density of a warp is one, sampling follows it, and Invert undoes Sample; also between tables.
@@ -184,6 +240,13 @@ TEST_F(Measured, DamagedFilesAreErrors) {
     damaged[i].shape[0] = ~uint64_t{0};
     EXPECT_NE(MessageOf(TensorFile(damaged)), "") << fields[i].name;
   }
+  std::vector<MeasuredField> named = fields;
+  named[2].name = std::string("n\033[31md\0f", 9);
+  named[2].shape[0] = ~uint64_t{0};
+  EXPECT_NE(MessageOf(TensorFile(named)).find("its field \"n?[31md?f\" is larger"), std::string::npos);
+  std::vector<MeasuredField> empty = fields;
+  empty[0].shape[0] = 0;
+  EXPECT_NE(MessageOf(TensorFile(empty)).find("\"theta_i\" holds no 32-bit numbers"), std::string::npos);
   std::vector<MeasuredField> fewer = fields;
   fewer[0].shape[0] = 2;
   EXPECT_NE(MessageOf(TensorFile(fewer)).find("does not fit"), std::string::npos);
