@@ -55,6 +55,9 @@ void PassBias::Add(const Color& bias, float filterWeight) {
 }
 
 void PixelBias::Add(const PassBias& pass) {
+  weights += static_cast<double>(pass.count) * pass.count;
+  // Most samples merge nothing.
+  if (pass.sum[0] == 0 && pass.sum[1] == 0 && pass.sum[2] == 0) return;
   double luminance = 0;
   for (int c = 0; c < 3; ++c) {
     sum[c].Add(pass.sum[c]);
@@ -62,7 +65,6 @@ void PixelBias::Add(const PassBias& pass) {
   }
   squares.Add(luminance * luminance);
   products.Add(pass.count * luminance);
-  weights += static_cast<double>(pass.count) * pass.count;
 }
 
 void PixelBias::Add(const PixelBias& other) {
