@@ -460,6 +460,10 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
 void RenderJob::PrintHints() const {
   for (const std::string& hint : IntegratorHints(built_.scene, settings_.integrator))
     std::fprintf(stderr, "hint: %s\n", hint.c_str());
+  const std::string named = options_.overrides.integrator.value_or(settings_.namedIntegrator);
+  if (!named.empty() && !IsAuto(named))
+    for (const std::string& line : SettingsWithoutEffect(named, options_.overrides.values))
+      std::fprintf(stderr, "hint: %s\n", line.c_str());
   if (options_.overrides.integrator || settings_.namedIntegrator.empty()) return;
   if (options_.shard || options_.resume) return;
   IntegratorChoice suits;

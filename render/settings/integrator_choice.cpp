@@ -100,6 +100,24 @@ RenderSettings VariantOf(const RenderSettings& settings, const std::string& name
   return variant;
 }
 
+std::vector<std::string> SettingsWithoutEffect(const std::string& integrator,
+                                               const std::map<std::string, SettingValue>& given) {
+  const auto reads = [](const IntegratorType& type, const std::string& name) {
+    return std::any_of(type.settings.begin(), type.settings.end(),
+                       [&](const Setting* setting) { return setting->name == name; });
+  };
+  std::vector<std::string> lines;
+  for (const auto& [name, value] : given) {
+    if (reads(IntegratorOf(integrator), name)) continue;
+    std::vector<std::string> readers;
+    for (const IntegratorType& type : IntegratorRegistry())
+      if (reads(type, name)) readers.push_back(type.name);
+    lines.push_back("--" + name + " has no effect: " + integrator + " does not have this setting, but " +
+                    Listed(readers));
+  }
+  return lines;
+}
+
 bool GathersPhotons(const RenderSettings& settings) {
   return GathersPhotons(settings.integrator, settings.values);
 }

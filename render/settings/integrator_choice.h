@@ -1,8 +1,10 @@
 // Creates the integrator that the settings name; integrator variants.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/settings/render_settings.h"
 
@@ -27,6 +29,10 @@ bool IsAuto(const std::string& name);
 
 // For --integrator: throws a UsageError that lists the valid names, unless it is one of them or "auto".
 void CheckIntegratorName(const std::string& name);
+
+// One line for each of the settings `given`, by name, that the integrator does not read, with those that do.
+std::vector<std::string> SettingsWithoutEffect(const std::string& integrator,
+                                               const std::map<std::string, SettingValue>& given);
 
 bool GathersPhotons(const RenderSettings& settings);
 

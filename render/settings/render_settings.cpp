@@ -203,7 +203,8 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   settings.sensor = ReadSensor(film, imagingRatio, sensor == "cie1931");
 
   ReadCrop(film, overrides, settings, diagnostics);
-  film.Find("diagonal");  // the film's size in mm: read for "realistic" cameras only
+  // The film's size in mm is read for "realistic" cameras only.
+  if (!(film.GetFloat("diagonal", 1) > 0)) throw Error(film.WhereOf("diagonal"), "\"diagonal\" must be above 0 (mm)");
   film.CheckAllUsed(
       {"coordinatesystem"},
       {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "whitebalance", "maxcomponentvalue",

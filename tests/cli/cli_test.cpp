@@ -379,6 +379,22 @@ TEST_F(Cli, WritesPicturesOfTechniques) {
   EXPECT_NE(large.output.find("of memory"), std::string::npos) << large.output;
 }
 
+// A setting of another integrator than the one that is named does nothing; auto may read it.
+TEST_F(Cli, HintsAtSettingsWithoutEffect) {
+  Write("scene.pbrt", kScene);
+  const auto outputOf = [&](const std::string& arguments) {
+    const Outcome outcome = Run("render scene.pbrt --resolution 8x8 --spp 1 -o a.exr " + arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+    return outcome.output;
+  };
+  EXPECT_NE(outputOf("--integrator path --radius 0.1 --max-depth 3")
+                .find("hint: --radius has no effect: path does not have this setting, but sppm, vcm\n"),
+            std::string::npos);
+  EXPECT_EQ(outputOf("--integrator path --max-depth 3 --no-guide-paths").find("no effect"), std::string::npos);
+  EXPECT_EQ(outputOf("--integrator vcm --radius 0.1").find("no effect"), std::string::npos);
+  EXPECT_EQ(outputOf("--integrator auto --radius 0.1").find("no effect"), std::string::npos);
+}
+
 // The hint names the light that the chosen integrator cannot find, and an integrator that can; without such light there
 // is no hint.
 TEST_F(Cli, HintsAtWhatAnIntegratorCannotFind) {
