@@ -27,6 +27,8 @@ class AbandonableRender {
   int SamplesPerPixel() const { return samples_; }
   double Seconds() const { return seconds_; }  // of the passes
   const Film& Picture() const { return film_; }
+  GuidingStatistics Guiding() const { return passes_.Guiding(); }
+  const std::shared_ptr<const PathGuide>& Guide() const { return passes_.Guide(); }
   // Fraction of the samples, or of the photons if that is larger, that was dropped as invalid.
   double DroppedFraction() const;
 

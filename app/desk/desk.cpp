@@ -7,6 +7,8 @@
 
 #include "app/desk/keep_scene.h"
 #include "app/desk/page.h"
+#include "base/stop.h"
+#include "render/analysis/guide_view.h"
 #include "scene/referenced_files.h"
 
 namespace lampyr {
@@ -137,9 +139,9 @@ class Desk::Requests {
     if (request_.method == "GET") return AnswerGet();
     body_ = Json::parse(request_.body);
     const std::pair<const char*, HttpReply (Requests::*)() const> posts[] = {
-        {"picture", &Requests::Picture}, {"pixel", &Requests::Pixel}, {"edit", &Requests::Edit},
-        {"reset", &Requests::Reset},     {"set", &Requests::Set},     {"pause", &Requests::Pause},
-        {"keep", &Requests::Keep}};
+        {"picture", &Requests::Picture}, {"pixel", &Requests::Pixel}, {"guide", &Requests::Guide},
+        {"edit", &Requests::Edit},       {"reset", &Requests::Reset}, {"set", &Requests::Set},
+        {"pause", &Requests::Pause},     {"keep", &Requests::Keep}};
     for (const auto& [path, answer] : posts) {
       if (request_.path == path) return (this->*answer)();
     }
@@ -218,16 +220,48 @@ class Desk::Requests {
             shape};
   }
 
-  HttpReply Pixel() const {
-    const std::shared_ptr<const DeskPicture> picture = desk_.session_.Picture();
+  std::shared_ptr<const DeskPicture> SomePicture() const {
+    std::shared_ptr<const DeskPicture> picture = desk_.session_.Picture();
     if (!picture) throw Error("there is no picture yet");
-    const std::vector<Color> factors = FactorsFor(*picture);
-    const LayerPlanes& planes = picture->planes;
+    return picture;
+  }
+  // The column and the row of the pixel that is asked for.
+  std::pair<int, int> PlaceIn(const LayerPlanes& planes) const {
     const uint64_t x = WholeNumberIn(body_, "x"), y = WholeNumberIn(body_, "y");
     if (x >= static_cast<uint64_t>(planes.width) || y >= static_cast<uint64_t>(planes.height))
       throw Error("that is beyond the picture");
-    const MixedPixel pixel =
-        MixPixel(planes, ByLayer(planes, desk_.faders_, factors), static_cast<int>(x), static_cast<int>(y));
+    return {static_cast<int>(x), static_cast<int>(y)};
+  }
+
+  HttpReply Guide() const {
+    const std::shared_ptr<const DeskPicture> picture = SomePicture();
+    const auto [x, y] = PlaceIn(picture->planes);
+    const RenderSettings& settings = picture->scene->settings;
+    GuideView view;
+    try {
+      if (picture->guide)
+        view = ViewGuide(picture->scene->scene, picture->guide, settings.width, settings.height, settings.crop.x0 + x,
+                         settings.crop.y0 + y);
+    } catch (const Stopped&) {
+      throw Error("the scene has just been edited");
+    }
+    return ReplyWith({{"isLearned", settings.GuidesPaths()},
+                      {"isUsed", picture->guide != nullptr},
+                      {"gain", Finite(picture->guideGain)},
+                      {"regions", picture->guide ? picture->guide->Regions() : 0},
+                      {"isGuided", view.isGuided},
+                      {"share", view.share},
+                      {"columns", GuideView::kColumns},
+                      {"rows", GuideView::kRows},
+                      {"densities", view.densities}});
+  }
+
+  HttpReply Pixel() const {
+    const std::shared_ptr<const DeskPicture> picture = SomePicture();
+    const std::vector<Color> factors = FactorsFor(*picture);
+    const LayerPlanes& planes = picture->planes;
+    const auto [x, y] = PlaceIn(planes);
+    const MixedPixel pixel = MixPixel(planes, ByLayer(planes, desk_.faders_, factors), x, y);
     Json interval = nullptr;
     const bool isKnown = pixel.hasDeviation && picture->samplesPerPixel > 1;
     constexpr double kSpread = 1.96;

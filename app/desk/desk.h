@@ -22,6 +22,7 @@ class Desk {
   //   GET  state, lights            JSON: how far the picture is; faders, and parameters of lights and filters
   //   POST picture {factors, exposure, clip, after}   width · height · 4 bytes; waits for one after `after`, if given
   //   POST pixel {factors, x, y}    JSON: its value, and half its 95 % interval where that is known
+  //   POST guide {x, y}             JSON: what path guiding has learned there (render/analysis/guide_view.h)
   //   POST edit {statement, parameter, numbers | text}, reset {statement, parameter}, set {factors}
   //   POST pause {on}, keep {factors}
   //

@@ -269,6 +269,9 @@ void DeskSession::TakePicture(Run& run) {
   picture->relativeError = render.DroppedFraction() > kMostDropped ? std::numeric_limits<double>::infinity()
                                                                    : render.Picture().RelativeError(run.largestSample);
   picture->restart = run.restart;
+  picture->scene = run.scene;
+  picture->guide = render.Guide();
+  picture->guideGain = render.Guiding().gain;
   run.pictureSeconds = SecondsSince(start);
   run.renderedSince = 0;
   const std::lock_guard lock(mutex_);

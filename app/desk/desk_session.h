@@ -28,6 +28,9 @@ struct DeskPicture {
   int samplesPerPixel = 0;
   double seconds = 0;        // of rendering
   double relativeError = 0;  // at 95 % confidence; infinite if unknown
+  std::shared_ptr<const BuiltScene> scene;
+  std::shared_ptr<const PathGuide> guide;  // of the last pass; null: walks were not guided
+  double guideGain = 1;                    // GuidingStatistics::gain
 };
 
 struct DeskState {

@@ -360,6 +360,52 @@ TEST_F(Desk, WorksWithGroupsAndOtherIntegrators) {
   }
 }
 
+// What was learned at a pixel: a density over all directions, which has its most where the light comes from.
+TEST_F(Desk, ShowsWhereAPixelsPathsGo) {
+  // The floor is lit by a spot behind a wall, by way of the wall at x = -2: the picture has that on the right.
+  WriteBytes(folder_ / "indirect.pbrt", R"(LookAt 0 1 4  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 48 "integer yresolution" 32
+Sampler "sobol" "integer pixelsamples" 16
+WorldBegin
+Material "diffuse" "rgb reflectance" [ 0.8 0.8 0.8 ]
+Shape "bilinearmesh" "point3 P" [ -2 0 -2  2 0 -2  -2 0 2  2 0 2 ]
+Shape "bilinearmesh" "point3 P" [ -2 0 -2  -2 0 2  -2 3 -2  -2 3 2 ]
+Shape "bilinearmesh" "point3 P" [ 1 0 -2  1 0 2  1 2 -2  1 2 2 ]
+LightSource "spot" "rgb I" [ 200 200 200 ] "point3 from" [ 2 2.5 0 ] "point3 to" [ -2 2 0 ] "float coneangle" 12
+)");
+  const DeskProcess desk(folder_.Path(), "indirect.pbrt --quiet --integrator path --spp 16 --guide-always");
+  desk.WaitUntilDone();
+  const Json guide = desk.PostJson("guide", {{"x", 24}, {"y", 22}});
+  ASSERT_TRUE(guide.at("isGuided").get<bool>()) << guide.dump().substr(0, 300);
+  EXPECT_TRUE(guide.at("isUsed").get<bool>());
+  EXPECT_GT(guide.at("share").get<double>(), 0);
+  EXPECT_GT(guide.at("regions").get<int>(), 0);
+  const int columns = guide.at("columns").get<int>(), rows = guide.at("rows").get<int>();
+  const auto densities = guide.at("densities").get<std::vector<double>>();
+  ASSERT_EQ(densities.size(), static_cast<size_t>(columns * rows));
+  constexpr double kPiExact = 3.14159265358979323846;
+  double all = 0, right = 0;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const double solidAngle =
+          2 * kPiExact / columns * (kPiExact / rows) * std::cos(kPiExact * ((row + 0.5) / rows - 0.5));
+      const double part = densities[static_cast<size_t>(row * columns + column)] * solidAngle;
+      all += part;
+      if (column >= columns / 2) right += part;
+    }
+  }
+  EXPECT_NEAR(all, 1, 0.05);
+  EXPECT_GT(right, 0.8 * all);
+  // The background has no walks.
+  EXPECT_FALSE(desk.PostJson("guide", {{"x", 24}, {"y", 0}}).at("isGuided").get<bool>());
+  const DeskProcess unguided(folder_.Path(), "indirect.pbrt --quiet --integrator path --spp 2 --no-guide-paths");
+  unguided.WaitUntilDone();
+  const Json none = unguided.PostJson("guide", {{"x", 24}, {"y", 22}});
+  EXPECT_FALSE(none.at("isLearned").get<bool>());
+  EXPECT_FALSE(none.at("isGuided").get<bool>());
+}
+
 TEST_F(Desk, ToldMistakesOfTheCommandLine) {
   const Outcome missing = RunLampyr(folder_.Path(), "desk nothing.pbrt");
   EXPECT_EQ(missing.exitCode, 2) << missing.output;

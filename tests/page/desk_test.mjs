@@ -53,6 +53,15 @@ const settled = (page) => page.waitForFunction(() => Number(document.getElementB
 
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
+deskTest('a click shows what path guiding has learned there', {}, async (page) => {
+  assert.ok(await page.locator('#guide').isHidden());
+  await page.locator('#picture').click({position: {x: 300, y: 250}});
+  await page.waitForFunction(() => document.getElementById('guide-text').textContent !== '');
+  const text = await page.locator('#guide-text').textContent();
+  assert.match(text, /paths are not guided|% of the paths go by this density/i);
+  assert.equal(await page.locator('#guide-map').isVisible(), /% of the paths/.test(text));
+});
+
 deskTest('shows the picture and all lights', {}, async (page) => {
   assert.equal(await page.locator('.fader').count(), 20);
   assert.equal(await page.locator('#picture').evaluate((canvas) => `${canvas.width}x${canvas.height}`), '1280x720');

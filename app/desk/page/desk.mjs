@@ -151,6 +151,35 @@ for (const kind of ['pointermove', 'pointerdown']) canvas.addEventListener(kind,
   showPixel();
 });
 
+// ---- the guide of paths from what a pixel sees
+
+function guideText({x, y}, guide) {
+  const gain = `the variance of paths would be ${guide.gain?.toPrecision(2)} times less with a guide`;
+  if (!guide.isLearned) return 'Nothing is learned: path guiding is off';
+  if (!guide.isUsed) return guide.gain === 1 ? 'Paths are not guided so far' : `Paths are not guided: ${gain}`;
+  if (!guide.isGuided) return `${x}, ${y}: paths are not guided there`;
+  return `${x}, ${y}: ${Math.round(100 * guide.share)} % of the paths go by this density, at most ` +
+    `${digits(Math.max(...guide.densities))} per steradian; the middle is where the camera looks`;
+}
+const showGuide = latestOnly(async () => {
+  const at = {...pointed};
+  $('guide').hidden = false;
+  $('guide-map').hidden = true;
+  try {
+    const guide = await (await post('guide', at)).json();
+    $('guide-text').textContent = guideText(at, guide);
+    if (!guide.isGuided) return;
+    const image = new ImageData(guide.columns, guide.rows), most = Math.max(...guide.densities);
+    guide.densities.forEach((density, i) => image.data.fill(255 * toEncoded(density / most), 4 * i, 4 * i + 3));
+    for (let i = 3; i < image.data.length; i += 4) image.data[i] = 255;
+    $('guide-map').getContext('2d').putImageData(image, 0, 0);
+    $('guide-map').hidden = false;
+  } catch (error) {
+    $('guide-text').textContent = error.message;
+  }
+});
+canvas.addEventListener('click', () => pointed && showGuide());
+
 // ---- exposure and tone
 
 const signed = (v) => (v > 0 ? '+' : v < 0 ? '−' : '') + Math.abs(v).toFixed(2);
