@@ -28,6 +28,7 @@ class AbandonableRender {
   double Seconds() const { return seconds_; }  // of the passes
   const Film& Picture() const { return film_; }
   GuidingStatistics Guiding() const { return passes_.Guiding(); }
+  bool LearnsPaths() const { return passes_.LearnsPaths(); }
   const std::shared_ptr<const PathGuide>& Guide() const { return passes_.Guide(); }
   // Fraction of the samples, or of the photons if that is larger, that was dropped as invalid.
   double DroppedFraction() const;

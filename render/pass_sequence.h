@@ -46,6 +46,7 @@ class PassSequence {
   // Photon statistics; nullopt if the integrator gathers no photons.
   std::optional<PhotonStatistics> Photons() const;
   GuidingStatistics Guiding() const;
+  bool LearnsPaths() const { return paths_ != nullptr; }
   // The guide of walks that the last pass had; null: they were not guided.
   const std::shared_ptr<const PathGuide>& Guide() const { return view_.guide; }
   // Fraction of `dropped` of all samples, or of the photons if that is larger, that was invalid.

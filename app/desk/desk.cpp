@@ -245,7 +245,7 @@ class Desk::Requests {
     } catch (const Stopped&) {
       throw Error("the scene has just been edited");
     }
-    return ReplyWith({{"isLearned", settings.GuidesPaths()},
+    return ReplyWith({{"isLearned", picture->learnsPaths},
                       {"isUsed", picture->guide != nullptr},
                       {"gain", Finite(picture->guideGain)},
                       {"regions", picture->guide ? picture->guide->Regions() : 0},

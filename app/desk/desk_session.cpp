@@ -271,6 +271,7 @@ void DeskSession::TakePicture(Run& run) {
   picture->restart = run.restart;
   picture->scene = run.scene;
   picture->guide = render.Guide();
+  picture->learnsPaths = render.LearnsPaths();
   picture->guideGain = render.Guiding().gain;
   run.pictureSeconds = SecondsSince(start);
   run.renderedSince = 0;

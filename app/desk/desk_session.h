@@ -30,6 +30,7 @@ struct DeskPicture {
   double relativeError = 0;  // at 95 % confidence; infinite if unknown
   std::shared_ptr<const BuiltScene> scene;
   std::shared_ptr<const PathGuide> guide;  // of the last pass; null: walks were not guided
+  bool learnsPaths = false;                // a guide is learned
   double guideGain = 1;                    // GuidingStatistics::gain
 };
 

@@ -264,7 +264,7 @@ TEST(Neighbourhood, NoiseIsThatOfVariancesOrStandardErrors) {
 TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
   BuiltScene built = Build(kCamera + kLamp);
   built.choiceTime = {0.2, 0.2};
-  const ComparedScene scene(built, 1, kNever);
+  const ComparedScene scene(built, 1, kNever, true);  // in time of the processor, which other work does not change
   for (const char* name : {"auto", "path"}) {
     std::vector<ComparedScene::Milestone> reached;
     const auto keep = [&](size_t, const ComparedScene::Milestone& milestone, const Image&) {

@@ -155,7 +155,7 @@ for (const kind of ['pointermove', 'pointerdown']) canvas.addEventListener(kind,
 
 function guideText({x, y}, guide) {
   const gain = `the variance of paths would be ${guide.gain?.toPrecision(2)} times less with a guide`;
-  if (!guide.isLearned) return 'Nothing is learned: path guiding is off';
+  if (!guide.isLearned) return 'No guide is learned: path guiding is off, or the integrator has none';
   if (!guide.isUsed) return guide.gain === 1 ? 'Paths are not guided so far' : `Paths are not guided: ${gain}`;
   if (!guide.isGuided) return `${x}, ${y}: paths are not guided there`;
   return `${x}, ${y}: ${Math.round(100 * guide.share)} % of the paths go by this density, at most ` +
