@@ -1,4 +1,4 @@
-// What path guiding has learned of the place that a pixel sees, for display.
+// The guide of a pixel, for display: the learned density of directions at the place that the pixel sees.
 #pragma once
 
 #include <memory>

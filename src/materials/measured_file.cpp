@@ -224,7 +224,8 @@ void CloseTurn(Tensors& tensors) {
 }
 
 // Sets what part of a turn the azimuths cover: all, a half between multiples of π, or a quarter between multiples of
-// π/2. The rest are mirror images. They may stop one step before the part ends: a turn is closed then.
+// π/2. The rest are mirror images. They may stop one step before the part ends: a turn is closed then; in
+// parts, the last azimuth stands for that step.
 void SetSymmetry(Tensors& tensors, MeasuredData& data) {
   constexpr double kTurn = 2 * 3.14159265358979323846, kRounding = 1e-2;
   data.isIsotropic = data.phi.size() <= 2;

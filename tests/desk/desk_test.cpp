@@ -360,7 +360,7 @@ TEST_F(Desk, WorksWithGroupsAndOtherIntegrators) {
   }
 }
 
-// What was learned at a pixel: a density over all directions, which has its most where the light comes from.
+// The guide of a pixel is a density over all directions, and is largest towards the wall that lights the floor.
 TEST_F(Desk, ShowsWhereAPixelsPathsGo) {
   // The floor is lit by a spot behind a wall, by way of the wall at x = -2: the picture has that on the right.
   WriteBytes(folder_ / "indirect.pbrt", R"(LookAt 0 1 4  0 0.5 0  0 1 0
