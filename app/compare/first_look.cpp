@@ -31,11 +31,15 @@ struct PilotRun {
   bool isBlurred = false;           // by photons
   std::vector<Image> wide, narrow;  // of the parts, if it is blurred: at two radii
   double ratioOfRadii = 0.5;
+  bool isBlurFromZero = false;  // significantly
 
   // relMSE of noise and blur.
   double TotalError() const { return pilot.relMse + pilot.bias * pilot.bias; }
-  // Total error of a render `longer` times as long: noise falls, blur hardly does.
-  double TotalErrorOf(double longer) const { return pilot.relMse / longer + pilot.bias * pilot.bias; }
+  // Total error that is certain of a render `longer` times as long: noise falls, blur hardly does. In short pilots the
+  // estimate of a blur may be noise, which is no reason to do without light.
+  double CertainErrorOf(double longer) const {
+    return pilot.relMse / longer + (isBlurFromZero ? pilot.bias * pilot.bias : 0.0);
+  }
 };
 
 constexpr int kGrid = 16;
@@ -161,9 +165,11 @@ PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred, double longer) {
     return blurred;
   }
   if (sharp->isHinted && !blurred->isHinted) {
-    const double missing = LightThatMayBeMissing(*sharp, *blurred);
     const bool isKnown = sharp->missing > kNegligibleLight;
-    if ((isKnown ? kWorthLight : 1.0) * (sharp->pilot.relMse / longer + missing) > blurred->TotalErrorOf(longer)) {
+    // The mean square of what pixels lack is at least the square of what the picture lacks.
+    const double missing =
+        std::max(LightThatMayBeMissing(*sharp, *blurred), isKnown ? sharp->missing * sharp->missing : 0.0);
+    if ((isKnown ? kWorthLight : 1.0) * (sharp->pilot.relMse / longer + missing) > blurred->CertainErrorOf(longer)) {
       sharp->pilot.isFlawed = true;
       sharp->pilot.note = isKnown ? "cannot find all light: it misses " + FormatPercent(sharp->missing)
                                   : "cannot find all light, and may miss " + FormatPercent(std::sqrt(missing)) +
@@ -266,13 +272,15 @@ Image RenderPart(const ComparedScene& scene, PilotRun& run, int part, double sec
   return both.Mean();
 }
 
-// The blur of the mean of pictures at both radii.
-double BlurOfBoth(const PilotRun& run) {
+// Fills in the blur of the mean of pictures at both radii.
+void EstimateBlur(PilotRun& run) {
   std::vector<const Image*> wide, narrow;
   for (const Image& image : run.wide) wide.push_back(&image);
   for (const Image& image : run.narrow) narrow.push_back(&image);
   const double q = run.ratioOfRadii;
-  return std::sqrt(DifferenceOfRadii(wide, narrow).Times(0.5 * (1 + q) / (1 - q)).relMse);
+  const Blur blur = DifferenceOfRadii(wide, narrow).Times(0.5 * (1 + q) / (1 - q));
+  run.pilot.bias = std::sqrt(blur.relMse);
+  run.isBlurFromZero = blur.isFromZero;
 }
 
 }  // namespace
@@ -297,7 +305,7 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, double 
     const Image mean = images[i].Mean();
     runs[i].pilot.mean = MeanValue(mean);
     runs[i].pilot.relMse = RelativeNoise(mean);
-    if (runs[i].isBlurred && runs[i].pilot.mean > 0) runs[i].pilot.bias = BlurOfBoth(runs[i]);
+    if (runs[i].isBlurred && runs[i].pilot.mean > 0) EstimateBlur(runs[i]);
   }
   Choose(runs, std::max(referenceSeconds / seconds, 1.0));
   std::vector<Pilot> pilots;
