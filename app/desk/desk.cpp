@@ -15,7 +15,7 @@ namespace lampyr {
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr int kWrong = 422, kNotFound = 404;
 
