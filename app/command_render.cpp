@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,11 +10,11 @@
 #include "app/denoise_support.h"
 #include "app/json_report.h"
 #include "app/preview.h"
+#include "app/render_checks.h"
+#include "app/render_files.h"
 #include "app/tev_display.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "base/version.h"
 #include "render/analysis/plan.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/invalid_light.h"
@@ -29,141 +27,14 @@
 #include "render/render_part.h"
 #include "render/sample_image.h"
 #include "render/settings/integrator_choice.h"
-#include "scene/referenced_files.h"
 
 namespace lampyr {
 
 namespace {
 
-// out.2-of-8.exr for a part, unless the user names it.
-std::filesystem::path OutputPath(const RenderOptions& options, const RenderSettings& settings) {
-  std::filesystem::path path;
-  if (options.output) {
-    path = *options.output;
-  } else {
-    path =
-        settings.outputFile.empty() ? options.scene.filename() : std::filesystem::path(settings.outputFile).filename();
-    // Only known extensions are removed: the number of frame.0001 is part of the name.
-    if (path.extension() == ".gz") path.replace_extension();
-    if (path.extension() == ".pbrt" || IsPictureEnding(path.extension().string())) path.replace_extension();
-    if (options.shard)
-      path += "." + std::to_string(options.shard->first) + "-of-" + std::to_string(options.shard->second);
-    path += ".exr";
-  }
-  CheckImageOutput(path, "--output", options.png || options.previewSeconds);
-  return path;
-}
-
-// Throws a UsageError if two outputs would be one file, or an output file is one of the input files of the scene.
-void CheckOutputs(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
-  const std::filesystem::path image = OutputPath(options, settings);
-  std::vector<std::pair<std::filesystem::path, const char*>> written = {{image, "--output"}};
-  if (options.png || options.previewSeconds)
-    written.emplace_back(std::filesystem::path(image).replace_extension(".png"), options.png ? "--png" : "--preview");
-  if (options.stats) written.emplace_back(*options.stats, "--stats");
-  if (options.checkpointSeconds) written.emplace_back(CheckpointPath(image), "--checkpoint");
-  for (size_t i = 0; i < written.size(); ++i) {
-    for (size_t k = 0; k < i; ++k) {
-      if (!WouldBeSameFile(written[i].first, written[k].first)) continue;
-      throw UsageError(std::string(written[i].second) + ": \"" + written[i].first.string() + "\" is what " +
-                       written[k].second + " writes; write to another file");
-    }
-  }
-  std::erase_if(written, [](const auto& file) {
-    std::error_code ignored;
-    return !std::filesystem::exists(file.first, ignored);
-  });
-  if (written.empty()) return;
-  std::vector<std::string> read = ReferencedFiles(scene);
-  read.insert(read.end(), scene.files.begin(), scene.files.end());
-  for (const auto& [file, option] : written) {
-    for (const std::string& part : read) {
-      if (!IsSameFile(file, part)) continue;
-      throw UsageError(std::string(option) + ": \"" + file.string() + "\" is a file that the scene reads, \"" + part +
-                       "\": it would be lost; write to another file");
-    }
-  }
-}
-
-// Reports an image that is too large for the machine before the system ends the process. The film is kept twice
-// (render_backup.h).
-void CheckMemory(const RenderSettings& settings, const Integrator& integrator, size_t layers, bool denoises) {
-  const bool withSplats = integrator.Paths() != TracedPaths::Camera, merges = integrator.Photons().has_value();
-  layers += denoises ? 1 : 0;
-  // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
-  const uint64_t firstHit = FirstHitChannels(settings).size() + (denoises ? FeatureChannels().size() : 0);
-  const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
-  const uint64_t ofFilm = Film::BytesPerPixel(layers, withSplats, settings.adaptive.has_value(), merges, merges);
-  const uint64_t perPixel = 2 * ofFilm + 2 * channels * sizeof(float);
-  const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
-  const uint64_t available = AvailableMemory();
-  if (needed <= available) return;
-  const auto gibibytes = [](uint64_t bytes) { return std::to_string((bytes >> 30) + 1) + " GiB"; };
-  throw UsageError("an image of " + std::to_string(settings.crop.Width()) + "×" +
-                   std::to_string(settings.crop.Height()) + " pixels takes " + gibibytes(needed) +
-                   " of memory and there are " + gibibytes(available) + ": render it in parts with --crop");
-}
-
-// The memory limit of photons is the same on all machines, so a pass of photons may need more than this machine has.
-void WarnOfPhotonMemory(const RenderSettings& settings, const PhotonSettings& photons) {
-  const double paths = photons.lightPaths > 0
-                           ? static_cast<double>(photons.lightPaths)
-                           : static_cast<double>(settings.width) * static_cast<double>(settings.height) *
-                                 (settings.counts ? settings.counts->LightPaths() : 1.0);
-  const double most = paths * settings.MaxDepth() *
-                      static_cast<double>(PhotonStore::BytesPerPhoton(true) + 2 * sizeof(SubpathDensities));
-  const double needed = std::min(most, static_cast<double>(photons.mostBytes));
-  const auto available = static_cast<double>(AvailableMemory());
-  if (needed <= available) return;
-  std::fprintf(stderr,
-               "warning: the photons of a pass may take %s of memory and there are %s: set a lower limit with "
-               "--photon-memory, the same on all machines that share the render\n",
-               FormatBytes(needed).c_str(), FormatBytes(available).c_str());
-}
-
 // True if the render's state is written for another process, which needs to identify the render.
 bool KeepsState(const RenderOptions& options) {
   return options.shard || options.resume || options.checkpointSeconds;
-}
-
-// Header of the picture with all samples of the part; the number of samples is not set.
-PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, const Shard& shard) {
-  const RenderSettings& settings = loaded.built.settings;
-  PartHeader header;
-  header.shard = shard;
-  header.width = settings.width;
-  header.height = settings.height;
-  header.crop = settings.crop;
-  header.layers = loaded.built.FilmLayers();
-  header.halfPrecision = settings.halfPrecision;
-  header.metadata = {{"lampyr.version", kVersion},
-                     {"lampyr.sceneHash", loaded.hash},
-                     {"lampyr.integrator", settings.integrator},
-                     {"lampyr.seed", std::to_string(settings.seed)}};
-  const std::vector<std::string>& groups = loaded.built.scene.lighting->Groups().Layers();
-  if (!groups.empty()) header.metadata["lampyr.lightGroups"] = Joined(groups, ",");
-  for (const OutputLayer& layer : loaded.built.scene.outputs->Layers()) {
-    if (!layer.text.empty()) header.metadata["lampyr.layer." + layer.name] = layer.text;
-  }
-  header.metadata[kSplatCountMetadata] = std::to_string(PixelFilter(settings.filter).SplatCount());
-  header.metadata.merge(FirstHitMetadata(loaded.built));
-  for (const char* layer : {kSamplesLayer, kErrorLayer, kBiasLayer}) {
-    if (settings.Wants(layer)) header.metadata[std::string(kSampleLayerMetadata) + layer] = "1";
-  }
-  if (settings.bands) {
-    header.metadata["spectralLayoutVersion"] = "1.0";
-    header.metadata["emissiveUnits"] = "W.m^-2.sr^-1";
-  }
-  if (options.autoLayers) header.metadata[kAutoLayersMetadata] = "yes";
-  if (options.denoise) {
-    header.layers.emplace_back(kHalfLayer);
-    header.metadata[kFeaturesMetadata] = "yes";
-  }
-  if (options.shard || options.resume || options.checkpointSeconds) {
-    header.identity = IdentityOf(loaded, options.robust);
-    header.identity.emplace_back("--denoise", options.denoise ? "on" : "off");
-  }
-  return header;
 }
 
 std::string DescribeError(const RenderOutcome& outcome, const RenderOptions& options) {
@@ -225,15 +96,6 @@ std::string DescribePartialPicture(const RenderOptions& options, const Film& fil
          " of the light paths of the first sample";
 }
 
-constexpr uint32_t kOpenEnd = 1u << 30;
-
-// Samples per pixel of the whole picture, over all parts.
-int SamplesWanted(const RenderOptions& options, const RenderSettings& settings) {
-  // With a stop by time or error alone, the scene's own sample count is ignored.
-  const bool isOpen = (options.seconds || options.targetError) && !options.overrides.samplesPerPixel;
-  return isOpen ? static_cast<int>(kOpenEnd) : settings.samplesPerPixel;
-}
-
 StopConditions MakeStopConditions(const RenderOptions& options, const Shard& shard) {
   StopConditions stop;
   stop.samplesPerPixel = static_cast<int>(shard.end - shard.first);
@@ -246,98 +108,6 @@ StopConditions MakeStopConditions(const RenderOptions& options, const Shard& sha
   stop.relativeError = options.targetError;
   stop.pixelShare = options.pixelShare;
   return stop;
-}
-
-// Writes the layers of strategies as pictures weighted-s2-t3.exr, unweighted-s2-t3.exr, … to the folder.
-void WriteStrategies(const RenderOptions& options, const RenderSettings& settings, const Image& image) {
-  for (const std::string& layer : StrategiesOf(settings).Names()) {
-    Image picture = ChannelsOf(image, {layer + ".R", layer + ".G", layer + ".B"});
-    picture.channels = {"R", "G", "B"};
-    std::string name = layer;
-    std::replace(name.begin(), name.end(), '.', '-');
-    const std::filesystem::path path = *options.strategyImages / (name + ".exr");
-    WriteExr(path, picture, ExrPrecision::Float);
-    if (options.png) WritePngBeside(path, picture, options.exposure, options.clipPng);
-  }
-}
-
-// Writes the picture so far. The file of one part (--shard) also carries its sums.
-void WriteImage(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& ofAll,
-                const Film& film, const Image& layers, const RenderOutcome& outcome) {
-  PartHeader header = ofAll;
-  header.samples = static_cast<uint32_t>(outcome.samplesPerPixel);
-  // Without a wanted number of samples, the picture is complete with those until the stop by time or error.
-  const bool isOpen = header.shard.whole == kOpenEnd;
-  const bool wasCut = outcome.interrupted || outcome.isPartial;
-  header.isFinished = header.samples == header.shard.end - header.shard.first || (isOpen && !wasCut);
-  if (!options.shard) {
-    WriteSamples(path, header, film, layers);
-    return;
-  }
-  WriteSamples(path, header, film, layers, [&](AtomicFile& file) {
-    AppendPart(file, PartKind::Picture, header, [&film](ByteWriter& bytes) { film.Save(bytes); });
-  });
-}
-
-// Writes the picture; if its folder is full or gone, writes it to the folder of temporary files and throws an Error
-// that names that file, so that a long render is not lost.
-void WriteImageOrKeepIt(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& header,
-                        const Film& film, const Image& layers, const RenderOutcome& outcome) {
-  try {
-    WriteImage(path, options, header, film, layers, outcome);
-  } catch (const Error& error) {
-    std::error_code isMissing;  // TMPDIR may name a folder that is gone
-    std::filesystem::path folder = std::filesystem::temp_directory_path(isMissing);
-    if (isMissing) folder = "/tmp";
-    const std::filesystem::path refuge =
-        folder / (path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string());
-    try {
-      WriteImage(refuge, options, header, film, layers, outcome);
-    } catch (const Error&) {
-      throw error;
-    }
-    throw Error(error.Text() + "; the picture is kept as \"" + refuge.string() + "\"");
-  }
-}
-
-void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
-                  const std::filesystem::path& checkpoint) {
-  if (options.stats) CheckWritable(*options.stats, "--stats");
-  if (options.checkpointSeconds) CheckWritable(checkpoint, "--checkpoint");
-  if (options.shard && GathersPhotons(settings) && SamplesWanted(options, settings) == static_cast<int>(kOpenEnd)) {
-    throw UsageError("--shard with " + settings.integrator +
-                     " needs --spp: each part has the radii of its own samples, whose numbers must be known");
-  }
-  if (options.autoLayers && settings.strategies)
-    throw UsageError("--auto-layers goes without strategies: those are of all techniques, once for each sample");
-  if (options.autoLayers && !settings.counts) {
-    throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
-                     ": auto decides nothing; --integrator auto lets it decide");
-  }
-  if (settings.strategies) StrategiesOf(settings);  // rejects an integrator without strategies
-  if (!options.strategyImages) return;
-  if (options.shard)
-    throw UsageError("--strategy-images goes without --shard: with --layer strategies the merged picture has them");
-  MakeFolder(*options.strategyImages, "--strategy-images");
-}
-
-// Layers of the decisions of auto over the crop: those of UsedCounts.
-Image AutoLayers(const RenderSettings& settings) {
-  const TechniqueCounts& counts = *settings.counts;
-  const CountedTechniques techniques = CountedTechniquesOf(settings.integrator, settings.values);
-  const PixelRect& crop = settings.crop;
-  Image image(crop.Width(), crop.Height(), AutoChannels());
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const Point2 center(static_cast<float>(crop.x0 + x) + 0.5f, static_cast<float>(crop.y0 + y) + 0.5f);
-      const UsedCounts used = counts.At(center, techniques);
-      image.At(x, y, 0) = static_cast<float>(used.lightPaths);
-      image.At(x, y, 1) = static_cast<float>(used.connecting);
-      image.At(x, y, 2) = static_cast<float>(used.merging);
-      image.At(x, y, 3) = static_cast<float>(used.continuing);
-    }
-  }
-  return image;
 }
 
 // Layers of strategies require all techniques, once for each sample.
@@ -386,7 +156,7 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
       checkpointPath_(CheckpointPath(path_)) {
   CheckOptions(options, settings_, checkpointPath_);
   integrator_ = MakeIntegrator(built_.scene, settings_);
-  CheckMemory(settings_, *integrator_, built_.FilmLayers().size(), options.denoise);
+  CheckRenderMemory(settings_, *integrator_, built_.FilmLayers().size(), options.denoise);
   if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   shard_ = ShardOf(part, parts, SamplesWanted(options, settings_));

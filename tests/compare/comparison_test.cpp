@@ -80,7 +80,8 @@ TEST(Reference, IsMadeByWhatFindsAllTheLight) {
   std::string text = kCamera + kCaustic;
   text.replace(text.find("\"float fov\" 42"), 14, "\"float fov\" 20");
   const BuiltScene built = Build(text);
-  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 0.3, 3, kQuiet)) {
+  // Three times as long as it takes: on a busy machine there are fewer samples in the same time.
+  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 1, 10, kQuiet)) {
     if (pilot.integrator == "path") {  // its picture has no noise to speak of, and no caustic
       EXPECT_FALSE(pilot.chosen);
       EXPECT_TRUE(pilot.isFlawed);
@@ -96,7 +97,7 @@ TEST(Reference, IsMadeByWhatFindsAllTheLight) {
       EXPECT_NE(pilot.note.find("cannot find all light"), std::string::npos) << pilot.note;
     }
     EXPECT_GT(pilot.samplesPerPixel, 0);
-    EXPECT_GT(pilot.seconds, 0.15);
+    EXPECT_GT(pilot.seconds, 0.5);
   }
 }
 
@@ -123,7 +124,7 @@ TEST(Reference, IsMadeWithPhotonsWhereNothingElseFindsTheLight) {
       "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [ -2 0 1.5  2 0 1.5  -2 3 1.5  2 3 1.5 ]\n";
   const BuiltScene built = Build(text);
-  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 0.5, 5, kQuiet))
+  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 1.5, 15, kQuiet))
     EXPECT_EQ(pilot.chosen, pilot.integrator == "vcm") << pilot.integrator << ": " << pilot.note;
 }
 
