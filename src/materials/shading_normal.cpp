@@ -9,23 +9,6 @@ namespace {
 
 constexpr float kBumpStep = 5e-4f;  // in uv, for finite differences
 
-int Wrap(int i, int n) {
-  const int r = i % n;
-  return r < 0 ? r + n : r;
-}
-
-// Bilinear, repeating.
-Color LookUp(const Image& image, const Point2& uv) {
-  const float u = uv.x - std::floor(uv.x), v = uv.y - std::floor(uv.y);
-  const float x = u * static_cast<float>(image.width) - 0.5f;
-  const float y = v * static_cast<float>(image.height) - 0.5f;
-  const float x0 = std::floor(x), y0 = std::floor(y);
-  const int ix = Wrap(static_cast<int>(x0), image.width), iy = Wrap(static_cast<int>(y0), image.height);
-  const int jx = Wrap(ix + 1, image.width), jy = Wrap(iy + 1, image.height);
-  return Lerp(Lerp(image.RgbAt(ix, iy), image.RgbAt(jx, iy), x - x0),
-              Lerp(image.RgbAt(ix, jy), image.RgbAt(jx, jy), x - x0), y - y0);
-}
-
 // The frame around n (any length, NaN or 0 allowed), flipped to the side of Ng; the surface's own frame if n is
 // unusable.
 Frame FrameAround(const Vector3& n, const SurfacePoint& point, const Vector3& tangent) {
@@ -46,10 +29,11 @@ ShadingNormal::ShadingNormal(const ParameterList& parameters, const TextureLibra
     diagnostics.Warn(parameters.WhereOf("displacement"),
                      "\"displacement\" is ignored: the material has a \"normalmap\"");
   }
-  normalMap_ = textures.GetImage(file, ImageEncoding::Linear, parameters.WhereOf("normalmap"));
-  if (!normalMap_->HasRgb() || normalMap_->width < 1 || normalMap_->height < 1) {
+  const auto image = textures.GetImage(file, ImageEncoding::Linear, parameters.WhereOf("normalmap"));
+  if (!image->HasRgb() || image->width < 1 || image->height < 1) {
     throw Error(parameters.WhereOf("normalmap"), "normal map " + file + " has no R, G and B channels");
   }
+  normalMap_.emplace(image, WrapMode::Repeat, true);
 }
 
 Frame ShadingNormal::GetFrame(const SurfacePoint& point) const {
@@ -57,7 +41,7 @@ Frame ShadingNormal::GetFrame(const SurfacePoint& point) const {
 }
 
 Frame ShadingNormal::FromNormalMap(const SurfacePoint& point) const {
-  const Color texel = LookUp(*normalMap_, {point.uv.x, 1 - point.uv.y});
+  const Color texel = normalMap_->LookupColor(point.uv);
   const Frame frame = Frame::FromNormalAndTangent(point.Ns, point.dpdu);
   return FrameAround(frame.ToWorld({2 * texel.r - 1, 2 * texel.g - 1, 2 * texel.b - 1}), point, point.dpdu);
 }

@@ -9,12 +9,11 @@
 // The result is on the side of Ng, as Ns is.
 #pragma once
 
-#include <memory>
 #include <optional>
 
-#include "film/image.h"
 #include "geometry/ray.h"
 #include "math/frame.h"
+#include "textures/texel_lookup.h"
 #include "textures/texture.h"
 
 namespace lampyr {
@@ -38,7 +37,7 @@ class ShadingNormal {
   Frame FromNormalMap(const SurfacePoint& point) const;
   Frame FromDisplacement(const SurfacePoint& point) const;
 
-  std::shared_ptr<const Image> normalMap_;
+  std::optional<TexelLookup> normalMap_;
   std::optional<FloatParameter> displacement_;
 };
 
