@@ -23,10 +23,8 @@ constexpr float kNoiseBound = 1.05f;
 // Slope of the noise by finite differences; displaces points.
 Vector3 NoiseSlope(const Point3& p) {
   constexpr float kStep = 0.01f;
-  const float here = Noise(p);
-  return (Vector3(Noise(p + Vector3(kStep, 0, 0)), Noise(p + Vector3(0, kStep, 0)), Noise(p + Vector3(0, 0, kStep))) -
-          Vector3(here)) /
-         kStep;
+  const auto [here, alongX, alongY, alongZ] = NoiseAround(p, kStep);
+  return (Vector3(alongX, alongY, alongZ) - Vector3(here)) / kStep;
 }
 
 // The density at height y if the noise sums to `noise`.
@@ -40,8 +38,8 @@ class CloudMedium : public BoxMedium {
   CloudMedium(const std::string& name, const CloudParameters& cloud, const Affine& toMedium, MajorantGrid majorants)
       : BoxMedium(name, cloud.scattering.asymmetry, false, toMedium, std::move(majorants)), cloud_(cloud) {}
 
-  // About 30 ns per evaluation of noise.
-  double LookupNanoseconds() const override { return 30 * (kOctaves + (cloud_.wispiness > 0 ? 8 : 0)); }
+  // About 20 ns for the noise at a point, and 43 around one.
+  double LookupNanoseconds() const override { return 20 * kOctaves + (cloud_.wispiness > 0 ? 2 * 43 : 0); }
 
  protected:
   MediumCoefficients AtInside(const Point3& p) const override {

@@ -1,10 +1,12 @@
 // Values of the patterns and mappings by hand; noise by its properties.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "math/noise.h"
+#include "sampling/rng.h"
 #include "texture_scene.h"
 
 namespace lampyr {
@@ -143,6 +145,22 @@ TEST(NoiseField, ZeroAtLatticePointsSmoothAndBounded) {
   EXPECT_LE(largest, 1.05f);
   EXPECT_GT(largest, 0.5f);
   for (int i = -3; i < 4; ++i) EXPECT_EQ(Noise({static_cast<float>(i), 2.0f, -7.0f}), 0);
+}
+
+TEST(NoiseField, AroundAPointIsThatOfFourPoints) {
+  Rng rng(7, 0);
+  for (const float range : {0.02f, 3.0f, 300.0f, 1e6f, 1e12f}) {
+    for (int i = 0; i < 2000; ++i) {
+      const Point3 p(range * (2 * rng.NextFloat() - 1), range * (2 * rng.NextFloat() - 1),
+                     range * (2 * rng.NextFloat() - 1));
+      const float step = i % 2 == 0 ? 0.01f : 0.6f;  // mostly within a cell, and often beyond it
+      const std::array<float, 4> around = NoiseAround(p, step);
+      EXPECT_NEAR(around[0], Noise(p), 1e-6f);
+      EXPECT_NEAR(around[1], Noise(p + Vector3(step, 0, 0)), 1e-6f);
+      EXPECT_NEAR(around[2], Noise(p + Vector3(0, step, 0)), 1e-6f);
+      EXPECT_NEAR(around[3], Noise(p + Vector3(0, 0, step)), 1e-6f);
+    }
+  }
 }
 
 TEST(NoiseField, CentredAndOfPeriod256) {
