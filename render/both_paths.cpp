@@ -15,6 +15,13 @@ constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed fo
 constexpr uint64_t kMorePaths = 0xbb67ae8584caa73b;       // changes the seed for further light paths of a sample
 constexpr int kPassTimes = -2;                            // in the place of the pixel row, for what passes share
 
+// Fetches the sums of a pixel into the cache, while its sample is traced.
+void PrefetchSums(const PixelSums& sums) {
+  constexpr size_t kLine = 64;
+  for (size_t offset = 0; offset < sizeof(PixelSums); offset += kLine)
+    Prefetch(reinterpret_cast<const char*>(&sums) + offset);
+}
+
 // A pass of camera and light paths, in chunks of the pixels of the full image.
 class BothPaths {
  public:
@@ -314,6 +321,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       context.film = ray.film;
       pass_.Record(x, y, pass_.allocation ? slots.number : index, pass_.learning ? &records_[chunk] : nullptr,
                    pass_.selection ? &tested_[chunk] : nullptr, context);
+      if (!adaptive) PrefetchSums(pass_.film.Pixel(x, y));
       context.mergeBias = adder.StartBias();
       adder.StartLayers();
       const Color radiance = edges.Radiance(x, y, slots.number, context, ray);
