@@ -1,6 +1,7 @@
 #include "render/both_paths.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
 #include "render/light_edges.h"
@@ -37,7 +38,10 @@ class BothPaths {
         // Smaller chunks for small images, so that all threads have work.
         chunkPaths_(std::min((pass.Pixels() + static_cast<uint64_t>(chunks_) - 1) / static_cast<uint64_t>(chunks_),
                              kChunkPaths)),
-        splats_(static_cast<size_t>(chunks_), pass.film.MakeSplatList(pass.filter, pass.settings.sensor)),
+        // The limit of a sample is on what a splat adds to it: divided by the light paths of a sample.
+        splats_(static_cast<size_t>(chunks_),
+                pass.film.MakeSplatList(
+                    pass.filter, pass.settings.sensor.WithLimitTimes(std::exp2(static_cast<float>(log2LightPaths_))))),
         photons_(static_cast<size_t>(chunks_)),
         records_(pass.MakeRecords(static_cast<size_t>(chunks_))),
         tested_(pass.MakeTested(static_cast<size_t>(chunks_))),

@@ -275,6 +275,7 @@ void DeskSession::TakePicture(Run& run) {
   picture->guideGain = render.Guiding().gain;
   run.pictureSeconds = SecondsSince(start);
   run.renderedSince = 0;
+  std::shared_ptr<const DeskPicture> before;  // may be the last to hold its scene: ends after the lock does
   const std::lock_guard lock(mutex_);
   if (run.isStale) return;
   picture->number = (picture_ ? picture_->number : 0) + 1;
@@ -283,7 +284,7 @@ void DeskSession::TakePicture(Run& run) {
   state_.seconds = picture->seconds;
   state_.relativeError = picture->relativeError;
   state_.isDone = IsDone(run);
-  picture_ = std::move(picture);
+  before = std::exchange(picture_, std::move(picture));
   changed_.notify_all();
 }
 

@@ -66,6 +66,7 @@ GuideView ViewGuide(const RenderScene& scene, const std::shared_ptr<const PathGu
   const SampleContext context{.scene = guided, .sampler = sampler, .time = 0, .counts = counts};
   const Point2 film(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const CameraRay camera = guided.camera->GenerateRay(film, Point2(0.5f), 0);
+  if (camera.weight == 0) return view;  // vignetted: the pixel sees nothing
   PathState state;
   state.ray = camera.ray;
   state.medium = guided.MediumOf(camera.ray);
@@ -73,7 +74,8 @@ GuideView ViewGuide(const RenderScene& scene, const std::shared_ptr<const PathGu
   FirstGuidedVertex visitor;
   Subpath path;
   Walk(context, {.mode = TransportMode::Radiance, .maxDepth = 32, .hasRoulette = false}, state, path, visitor);
-  if (!visitor.guide) return view;
+  // A region without a share is not guided, and has no mixture.
+  if (!visitor.guide || !(visitor.guide->radiance.share > 0)) return view;
   const MixtureFit& radiance = visitor.guide->radiance;
   view.isGuided = true;
   view.share = radiance.share;

@@ -29,8 +29,8 @@ constexpr double kPassesTime = 80e6;
 constexpr int kFewestPasses = 4;
 // Passes end where the standard error of the best candidate's error is no larger than this part of it.
 constexpr double kWellKnown = 0.05;
-// Passes of which guides and the roulette of camera paths are learned, fewer if they take so many rays. Their samples
-// are none of the recorded ones.
+// Passes of which guides and the roulette of camera paths are learned, fewer if they take so many rays, but as many as
+// it takes to make a guide and to test it. Their samples are none of the recorded ones.
 constexpr uint32_t kLearningPasses = 4, kFirstLearningPass = 256;
 constexpr uint32_t kPassesOfGuide = 2;  // of which a guide is made, to be tested on the others
 constexpr uint64_t kLearningRays = 200000;
@@ -118,7 +118,7 @@ void LearnPaths(const PilotIntegrators& integrators, const RenderSettings& combi
   PathLearning learning(grid.width, grid.height, static_cast<size_t>(grid.Pixels()), true,
                         combined.AlwaysGuidesPaths());
   uint64_t rays = 0;
-  for (uint32_t pass = 0; pass < kLearningPasses && rays < kLearningRays; ++pass) {
+  for (uint32_t pass = 0; pass < kLearningPasses && (pass <= kPassesOfGuide || rays < kLearningRays); ++pass) {
     std::vector<PathRecords> records(kChunks);
     PilotPasses passes(view, combined, grid, threads);
     const PassCounts counts =

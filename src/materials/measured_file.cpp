@@ -207,40 +207,47 @@ MeasuredTable<Color> ReflectanceOf(const Tensors& tensors, const MeasuredData& d
   return {std::move(colors), tensor.shape[4], tensor.shape[3]};
 }
 
-// Adds the first azimuth again after the last one, a turn later.
+constexpr double kTurn = 2 * 3.14159265358979323846;
+constexpr double kRoundingOfAngles = 1e-2;
+
+// Closes a turn of azimuths within [-π, π]: where they do not reach π, the first one is added after the last, a turn
+// later, and where they do not reach -π, the last one before the first.
 void CloseTurn(Tensors& tensors) {
-  constexpr double kTurn = 2 * 3.14159265358979323846;
+  const std::vector<float> given = tensors.at("phi_i").values;
+  const auto first = static_cast<double>(given.front()), last = static_cast<double>(given.back());
+  const bool isAppended = last<0.5 * kTurn - kRoundingOfAngles, isPrepended = first> - 0.5 * kTurn + kRoundingOfAngles;
   for (const char* name : {"phi_i", "vndf", "luminance", "spectra", "rgb"}) {
     const auto found = tensors.find(name);
     if (found == tensors.end() || found->second.shape.empty() || found->second.values.empty()) continue;
     Tensor& tensor = found->second;
-    const size_t each = tensor.values.size() / tensor.shape[0];
-    const std::vector<float> first(tensor.values.begin(), tensor.values.begin() + static_cast<std::ptrdiff_t>(each));
-    tensor.values.insert(tensor.values.end(), first.begin(), first.end());
-    ++tensor.shape[0];
+    const auto each = static_cast<std::ptrdiff_t>(tensor.values.size() / tensor.shape[0]);
+    const std::vector<float> ofFirst(tensor.values.begin(), tensor.values.begin() + each),
+        ofLast(tensor.values.end() - each, tensor.values.end());
+    if (isAppended) tensor.values.insert(tensor.values.end(), ofFirst.begin(), ofFirst.end());
+    if (isPrepended) tensor.values.insert(tensor.values.begin(), ofLast.begin(), ofLast.end());
+    tensor.shape[0] += (isAppended ? 1 : 0) + (isPrepended ? 1 : 0);
   }
   std::vector<float>& azimuths = tensors.at("phi_i").values;
-  azimuths.back() = static_cast<float>(static_cast<double>(azimuths.front()) + kTurn);
+  if (isAppended) azimuths.back() = static_cast<float>(first + kTurn);
+  if (isPrepended) azimuths.front() = static_cast<float>(last - kTurn);
 }
 
 // Sets what part of a turn the azimuths cover: all, a half between multiples of π, or a quarter between multiples of
 // π/2. The rest are mirror images. They may stop one step before the part ends: a turn is closed then; in
 // parts, the last azimuth stands for that step.
 void SetSymmetry(Tensors& tensors, MeasuredData& data) {
-  constexpr double kTurn = 2 * 3.14159265358979323846, kRounding = 1e-2;
   data.isIsotropic = data.phi.size() <= 2;
   if (data.isIsotropic) return;
   const auto first = static_cast<double>(data.phi.front()), last = static_cast<double>(data.phi.back());
   const double step = (last - first) / static_cast<double>(data.phi.size() - 1);
   for (const int symmetry : {4, 2, 1}) {
     const double part = kTurn / symmetry, missing = part - (last - first), start = first / part;
-    const bool isAligned =
-        symmetry == 1 ? first < -0.5 * kTurn + kRounding : std::abs(start - std::round(start)) * part <= kRounding;
-    if (!isAligned || missing < -kRounding || missing > step + kRounding) continue;
+    const bool isAligned = symmetry == 1 || std::abs(start - std::round(start)) * part <= kRoundingOfAngles;
+    if (!isAligned || missing < -kRoundingOfAngles || missing > step + kRoundingOfAngles) continue;
     data.symmetry = symmetry;
     data.partX = std::cos(first + 0.5 * part) < 0 ? -1.0f : 1.0f;
     data.partY = std::sin(first + 0.5 * part) < 0 ? -1.0f : 1.0f;
-    if (symmetry > 1 || missing <= kRounding) return;
+    if (symmetry > 1 || missing <= kRoundingOfAngles) return;
     CloseTurn(tensors);
     data.phi = tensors.at("phi_i").values;
     return;

@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <tuple>
 
 #include "agreement/agreement_scenes.h"
@@ -451,6 +454,32 @@ TEST(Pilot, LearnsWhereCameraPathsGo) {
   }
   EXPECT_LT(std::cbrt(path), 0.75);
   EXPECT_LT(std::cbrt(bdpt), 0.8);
+}
+
+// In white rooms a sample takes so many rays that few are enough to learn from, but a guide has to be tested, too.
+TEST(Pilot, LearnsInBrightRoomsToo) {
+  const std::filesystem::path file = std::filesystem::path(LAMPYR_SOURCE_DIR) / "scenes" / "door.pbrt";
+  std::ifstream stream(file);
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::string reflectance = "\"rgb reflectance\" [";
+  for (size_t at = text.find(reflectance); at != std::string::npos; at = text.find(reflectance, at + 1)) {
+    const size_t begin = at + reflectance.size();
+    text.replace(begin, text.find(']', begin) - begin, "0.93 0.93 0.93");
+  }
+  double path = 1;
+  for (const auto& [width, height] : {std::pair{96, 54}, {128, 72}}) {
+    RenderOverrides overrides;
+    overrides.width = width;
+    overrides.height = height;
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    BuiltScene built = BuildScene(ParseScene(text, file, diagnostics), overrides, true, diagnostics);
+    const RenderPilot with = RunPilot(built.scene, built.settings, 2, 8);
+    built.settings.values.Set("guide-paths", false);
+    const RenderPilot without = RunPilot(built.scene, built.settings, 2, 8);
+    path *= with.Find("path")->error / without.Find("path")->error;
+    EXPECT_GT(with.Find("path")->cost, 1.1 * without.Find("path")->cost);
+  }
+  EXPECT_LT(std::sqrt(path), 0.8);  // 0.55
 }
 
 // Two lights are chosen at a vertex where they differ, and one where both would tell the same.

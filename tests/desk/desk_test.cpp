@@ -397,6 +397,10 @@ LightSource "spot" "rgb I" [ 200 200 200 ] "point3 from" [ 2 2.5 0 ] "point3 to"
   }
   EXPECT_NEAR(all, 1, 0.05);
   EXPECT_GT(right, 0.8 * all);
+  for (int x = 2; x < 48; x += 4) {
+    const Json other = desk.PostJson("guide", {{"x", x}, {"y", 26}});
+    EXPECT_EQ(other.at("isGuided").get<bool>(), other.at("share").get<double>() > 0) << x;
+  }
   // The background has no walks.
   EXPECT_FALSE(desk.PostJson("guide", {{"x", 24}, {"y", 0}}).at("isGuided").get<bool>());
   const DeskProcess unguided(folder_.Path(), "indirect.pbrt --quiet --integrator path --spp 2 --no-guide-paths");
