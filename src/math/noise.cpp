@@ -29,7 +29,8 @@ constexpr std::array<uint8_t, 256> kPermutation = {
     181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,  222, 114,
     67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
 
-// The same twice, so that sums of two entries need no wrap. Lattice points repeat after 256 cells.
+// The permutation twice: the sum of an entry and a coordinate below 256 is an index. Lattice points repeat after 256
+// cells.
 constexpr std::array<uint8_t, 512> kHash = [] {
   std::array<uint8_t, 512> twice{};
   for (size_t i = 0; i < twice.size(); ++i) twice[i] = kPermutation[i % kPermutation.size()];
