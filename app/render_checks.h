@@ -1,4 +1,4 @@
-// What is checked before a render begins: its options, the files that it writes, and its memory.
+// Checks of a render before it begins: its options, the files that it writes, and the memory that it takes.
 #pragma once
 
 #include <cstddef>

@@ -14,8 +14,8 @@ namespace lampyr {
 // significantly darker than another's, anywhere, is excluded. Photons blur: an integrator that gathers them is chosen
 // only if no other finds all light, or if its error, noise and blur together, is at most a third of the noise of the
 // best of the others, or if all the others are known not to find some kinds of light (IntegratorHints) and in a render
-// of `referenceSeconds` may miss more than it blurs. If the pilot of "auto" has found such light, its error may be up
-// to twice that of the others.
+// of `referenceSeconds` may miss more than it blurs; only a blur that is significantly above 0 counts there. If the
+// pilot of "auto" has found such light, its error may be up to twice that of the others.
 std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, double referenceSeconds,
                              const ReferenceProgress& progress);
 
